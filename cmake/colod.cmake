@@ -1,0 +1,23 @@
+# One static library a room. PRIVATE names what stays behind the room's door.
+function(colod_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE" ${ARGN})
+  list(GET ARG_SOURCES 0 first)
+  if(NOT EXISTS ${CMAKE_SOURCE_DIR}/${first})
+    return()
+  endif()
+  add_library(colod_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(colod_${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE} colod_flags)
+endfunction()
+
+# Flags that every target of ours is built with.
+add_library(colod_flags INTERFACE)
+target_compile_options(colod_flags INTERFACE -Wall -Wextra -Wshadow $<$<BOOL:${COLOD_WERROR}>:-Werror>)
+if(COLOD_SANITIZE)
+  list(JOIN COLOD_SANITIZE "," sanitizers)
+  add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${sanitizers})
+endif()
+
+# Debian's TinyGLTF target; the implementation is compiled where it is used.
+add_library(tinygltf_headers INTERFACE)
+target_link_libraries(tinygltf_headers INTERFACE TinyGLTF::TinyGLTF)

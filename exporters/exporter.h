@@ -1,0 +1,35 @@
+// What all exporters share: they see results, never the pipeline, and return bytes; files.* alone
+// writes them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../src/geometry.h"
+
+namespace colod {
+
+/// A file to be: its path below OUT ('/' separated) and its bytes.
+struct Encoded {
+  std::string path;
+  std::string bytes;
+};
+
+/// One layer of one building as exporters see it. Coordinates: building-local metres, z up, axes
+/// parallel to the world's (the pipeline has undone the frame's yaw); world = local +
+/// ExportBuilding::origin.
+struct ExportLayer {
+  int layer = 0;  ///< 0 = coarsest
+  PolygonMesh mesh;
+  double geometric_error = 0;  ///< metres, measured one-sided Hausdorff distance source → layer,
+                               ///< made non-rising with finer layers
+};
+
+struct ExportBuilding {
+  std::string name;
+  std::string source;               ///< file it came from
+  Vec3 origin = Vec3::Zero();       ///< world position of the local origin
+  std::vector<ExportLayer> layers;  ///< coarsest first; not empty; layers that failed are absent
+};
+
+}  // namespace colod

@@ -1,0 +1,44 @@
+// Room 7: all segments beyond layer 0 → layers (paper section 3.2, Spectral Clustering).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "planes.h"
+#include "segments.h"
+#include "similarity.h"
+
+namespace colod {
+
+enum class Layering {
+  kSpectral,
+  kSize
+};  ///< size: one threshold per layer on the longest extent, the baseline to beat
+
+struct ClusteringOptions {
+  bool is_paper = false;  ///< all segments into the spectrum, ordered by mean volume; robust: flat
+                          ///< ones aside, median extent
+  Layering layering = Layering::kSpectral;
+  int layers = 3;  ///< l_n
+  double eta = 4.0;
+  std::uint64_t seed = 1;
+};
+
+struct Clustering {
+  std::vector<int> layer;  ///< per given segment, 1..l_n − 1 (0 everywhere when l_n is 1)
+  std::vector<double> eigenvalues;  ///< the smallest of L_norm, rising, at most 10
+  std::vector<std::string> warnings;
+};
+
+/// `segments` are those beyond layer 0 of all buildings together. Fewer segments than clusters, or
+/// none, is defined.
+Clustering cluster_segments(const std::vector<Descriptor>& segments,
+                            const ClusteringOptions& options = {});
+
+/// The planes of layer k of one building: those of segments on layers ≤ k, and planes of no segment
+/// that touch one of those. `layer_of_segment` per segment of the building. Rising plane indices.
+std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
+                              const std::vector<int>& layer_of_segment, int k);
+
+}  // namespace colod

@@ -1,0 +1,39 @@
+// Room 9: cells → interior and exterior → one watertight polygonal mesh a layer (paper section 3.3,
+// eq. 11).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "partition.h"
+#include "planes.h"
+#include "rays.h"
+
+namespace colod {
+
+struct ExtractionOptions {
+  bool is_paper =
+      false;  ///< rays over the sphere, more than half of n_r, no min-cut, no base and no rectangle
+  int nr = 100;
+  double growth = 0.1;      ///< metres an outline's hull reaches beyond the outline
+  double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut
+  int max_cells = 200000;
+};
+
+struct Extraction {
+  PolygonMesh mesh;  ///< closed, 2-manifold where `is_manifold`; local frame; never empty
+  std::int64_t cells = 0;
+  bool is_manifold = true;
+  std::vector<std::string> warnings;
+};
+
+/// `layer_planes` are indices into `planes`, in the order of cutting. `rays` is the scene of all
+/// planes' outlines (outline_scene), the same for all layers. Throws Error{kProcess} when no
+/// interior can be found.
+Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
+                         const RayScene& rays, const ExtractionOptions& options = {});
+
+/// All planes' outline triangles in one soup, in plane order.
+Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle = nullptr);
+
+}  // namespace colod

@@ -1,0 +1,50 @@
+// Room 1: files → Sources. The only room that knows file formats that come in.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry.h"
+
+namespace colod {
+
+enum class Split {
+  kAuto,
+  kNone,
+  kObject,
+  kComponent
+};  ///< how a file with several buildings is taken apart
+
+struct ReadOptions {
+  Split split = Split::kAuto;  ///< auto: glTF scene nodes and OBJ `o` objects when there are
+                               ///< several; otherwise one building a file
+  bool is_y_up = false;        ///< --up y; glTF is always y up and turned by itself
+  double unit = 1.0;           ///< metres per unit of the file (--unit m|cm|mm|ft)
+};
+
+/// A file that could not be read; the others go on.
+struct ReadFailure {
+  std::string path;
+  std::string message;  ///< one line naming the place and the cause
+};
+
+struct ReadResult {
+  std::vector<Source>
+      sources;  ///< in world coordinates, z up, metres; sorted by name; names unique
+  std::vector<ReadFailure> failures;
+};
+
+/// Reads every INPUT: a file, or a folder (each supported file in it, not recursive, sorted by
+/// name). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB (Draco too),
+/// XYZ/PWN points. Validates: coordinates finite (faces that use bad ones are dropped with a
+/// warning; points too), indices in range (otherwise a failure), at least one face of positive area
+/// or 3 points; polygons are fan-triangulated (concave ones by ear/CDT). Clouds without normals get
+/// estimated and oriented ones, with a warning. Throws Error{kInput} only when an INPUT does not
+/// exist or a folder holds no supported file.
+ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options = {});
+
+/// One file as one mesh, all its objects together, for `colod eval` and `colod info`. Throws
+/// Error{kInput}. A building GLB with MSFT_lod gives the mesh of its scene (the finest layer).
+Source read_single(const std::string& path, const ReadOptions& options = {});
+
+}  // namespace colod

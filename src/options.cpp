@@ -1,0 +1,57 @@
+#include "options.h"
+
+#include <cmath>
+
+#include "error.h"
+
+namespace colod {
+namespace {
+
+template <auto Member>
+OptionInfo row(std::string name, std::string unit, double min, double max, std::string help) {
+  using Value = std::decay_t<decltype(std::declval<Options>().*Member)>;
+  return {std::move(name),
+          std::move(unit),
+          min,
+          max,
+          std::move(help),
+          [](const Options& o) { return static_cast<double>(o.*Member); },
+          [](Options& o, double value) { o.*Member = static_cast<Value>(value); },
+          std::is_integral_v<Value>};
+}
+
+}  // namespace
+
+const std::vector<OptionInfo>& option_table() {
+  static const std::vector<OptionInfo> table = {
+      row<&Options::layers>("layers", "", 1, 8,
+                            "layers a building gets (l_n); layer 0 is the coarsest"),
+      row<&Options::ns>("ns", "", 8, 1000, "voxels along each side of a building's box (n_s)"),
+      row<&Options::nr>("nr", "", 4, 1000, "rays a voxel (n_r)"),
+      row<&Options::alcove_area>("alcove-area", "m2", 0, 1e9,
+                                 "planes smaller than this may form alcoves (A_eps)"),
+      row<&Options::beta>("beta", "", 0, 1e6, "weight of simplicity in layer 0 (beta)"),
+      row<&Options::lambda>("lambda", "", 0, 1e6,
+                            "weight of consistency between buildings in layer 0 (lambda)"),
+      row<&Options::eta>("eta", "", 0, 1e6,
+                         "weight of shape against scale in the similarity (eta)"),
+      row<&Options::distance>("distance", "m", 1e-4, 1e3,
+                              "how far a region's points may lie from its plane"),
+      row<&Options::angle_deg>("angle", "deg", 0.1, 89, "how far a region's normals may deviate"),
+      row<&Options::min_points>("min-points", "", 1, 1e9, "least points or faces of a region"),
+      row<&Options::seed>("seed", "", 0, 9007199254740992.0, "seed of everything drawn at random"),
+  };
+  return table;
+}
+
+void validate(const Options& options) {
+  for (const OptionInfo& info : option_table()) {
+    const double value = info.get(options);
+    if (!(value >= info.min && value <= info.max))  // refuses NaN too
+      throw Error(Stage::kUsage, "--" + info.name,
+                  "must lie between " + std::to_string(info.min) + " and " +
+                      std::to_string(info.max) + ", got " + std::to_string(value));
+  }
+}
+
+}  // namespace colod

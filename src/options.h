@@ -1,0 +1,48 @@
+// Every option of the pipeline, once: default, unit, range. The command line, the config file, the
+// report and docs/options.md are made from this table (options.cpp), so that none of them can
+// disagree.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace colod {
+
+enum class Rules { kRobust, kPaper };  ///< docs/rules.md says what each changes
+
+struct Options {
+  Rules rules = Rules::kRobust;
+  int layers = 3;           ///< l_n, 1..8
+  int ns = 150;             ///< n_s: voxels along each side of the box, 8..1000
+  int nr = 100;             ///< n_r: rays a voxel, 4..1000
+  double alcove_area = 80;  ///< A_eps, m²: planes below it may form alcoves
+  double beta = 0.3;        ///< weight of simplicity f_s
+  double lambda = 0.4;      ///< weight of consistency f_co
+  double eta = 4.0;         ///< weight of shape against scale
+  double distance =
+      0.2;  ///< region growing: metres from the plane. Robust: an upper bound (planes.h)
+  double angle_deg = 30;  ///< region growing: normals' deviation
+  int min_points =
+      20;  ///< region growing: least items of a region. Robust: by area as well (planes.h)
+  std::uint64_t seed = 1;  ///< of everything drawn at random
+};
+
+/// One row of the table.
+struct OptionInfo {
+  std::string name;  ///< as on the command line, without dashes
+  std::string unit;  ///< "", "m", "m2", "deg"
+  double min, max;   ///< allowed range, both ends included
+  std::string help;
+  double (*get)(const Options&);
+  void (*set)(Options&, double);
+  bool is_integer;
+};
+
+/// The numeric options, in the order in which they are documented.
+const std::vector<OptionInfo>& option_table();
+
+/// Throws Error{kUsage} naming the option when a value is NaN or out of its range.
+void validate(const Options& options);
+
+}  // namespace colod

@@ -1,0 +1,48 @@
+#include "parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+namespace colod {
+namespace {
+
+std::unique_ptr<tbb::global_control>& control() {
+  static std::unique_ptr<tbb::global_control> c;
+  return c;
+}
+
+}  // namespace
+
+void parallel_ranges(std::size_t n, std::size_t grain,
+                     const std::function<void(std::size_t, std::size_t)>& body) {
+  if (thread_count() == 1) {
+    if (n > 0) body(0, n);
+    return;
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                    [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+}
+
+void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, std::size_t grain) {
+  parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+void limit_threads(int threads) {
+  control().reset();
+  if (threads > 0)
+    control() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      threads);
+}
+
+int thread_count() {
+  return static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+}  // namespace colod

@@ -1,0 +1,27 @@
+// The only door to TBB: loops whose iterations write to their own slots, so that results do not
+// depend on threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace colod {
+
+/// Runs body(i) for i in [0, n), in any order, on the threads allowed by limit_threads. Nested
+/// calls share the same pool. The first exception thrown by a body is rethrown. `grain`: iterations
+/// a task takes at least.
+void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body,
+                  std::size_t grain = 1);
+
+/// The same over ranges: body(begin, end). Cheaper for tiny iterations.
+void parallel_ranges(std::size_t n, std::size_t grain,
+                     const std::function<void(std::size_t, std::size_t)>& body);
+
+/// At most `threads` threads from now on; 0 = all cores. Called once, by the command line or a
+/// test.
+void limit_threads(int threads);
+
+/// How many threads parallel_for may use.
+int thread_count();
+
+}  // namespace colod

@@ -1,0 +1,33 @@
+// Room 2: Source → Planes: the planar regions of a building with their outlines, oriented outward.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry.h"
+
+namespace colod {
+
+struct PlaneOptions {
+  bool is_paper = false;  ///< to the letter: CGAL region growing at
+                          ///< `distance`/`angle_deg`/`min_points`, nothing else
+  double distance = 0.2;  ///< metres; robust: the most it may be, the value used is found from the
+                          ///< data (planes.cpp)
+  double angle_deg = 30;
+  int min_points = 20;  ///< robust: regions are filtered by area instead; for clouds both hold
+};
+
+struct Planes {
+  std::vector<Plane> planes;       ///< largest area first, ties by centroid
+  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none
+  Box box;                         ///< of the source without its floaters
+  double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
+  double distance = 0;    ///< metres: the region growing distance used
+  std::vector<std::string> warnings;
+};
+
+/// `source` is in its local frame (frame.h). Deterministic; uses threads. Throws Error{kProcess}
+/// when no plane is found.
+Planes detect_planes(const Source& source, const PlaneOptions& options = {});
+
+}  // namespace colod

@@ -1,0 +1,55 @@
+// Room 6: all buildings' segments → layer 0 (paper section 3.2, eq. 2–5). The only file that names
+// the solver.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "segments.h"
+#include "similarity.h"
+
+namespace colod {
+
+/// What the selection needs to know of one building.
+struct SelectionBuilding {
+  std::vector<Descriptor> segments;  ///< area, d2 and eigenvalues are used
+  std::vector<Coverage> coverage;    ///< shares sum to 1 (or empty when there is no segment)
+};
+
+struct SelectionOptions {
+  bool is_paper = false;  ///< f_co summed and f_r > 0.8, to the letter; robust: see selection.cpp
+  double beta = 0.3, lambda = 0.4, eta = 4.0;
+  int starts = 8;  ///< of the block ascent
+  std::uint64_t seed = 1;
+  int exact_segments = 40;  ///< up to this many segments in all the whole program goes to lp_solve
+};
+
+enum class SelectionStatus {
+  kOptimal,
+  kGap,
+  kEmpty
+};  ///< proven optimal; best found with a bound; no segments at all
+const char* to_string(SelectionStatus status);
+
+struct Selection {
+  std::vector<std::vector<char>> is_layer0;  ///< [building][segment]
+  double objective = 0;                      ///< E_0 of the result of the optimisation
+  double bound = 0;                          ///< proven upper bound on E_0
+  double gap = 0;                            ///< (bound − objective) / max(1, |objective|)
+  SelectionStatus status = SelectionStatus::kEmpty;
+  double seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Every building keeps at least one segment (if it has any). Deterministic.
+Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
+                        const SelectionOptions& options = {});
+
+/// E_0 of a given choice, for tests and reports. −infinity when a building violates its bound on
+/// f_r.
+double selection_objective(const std::vector<SelectionBuilding>& buildings,
+                           const std::vector<std::vector<char>>& is_layer0,
+                           const SelectionOptions& options = {});
+
+}  // namespace colod

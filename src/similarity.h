@@ -1,0 +1,42 @@
+// Room 5: Segments → descriptors → distances (paper section 3.2, dis, scale_d, Sim_co).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "planes.h"
+#include "segments.h"
+
+namespace colod {
+
+/// What the co-analysis knows of a segment.
+struct Descriptor {
+  std::array<double, 64>
+      d2{};  ///< histogram of pair distances of the whitened surface, range 0..6, sum 1
+  Vec3 eigenvalues = Vec3::Zero();  ///< of the surface's covariance, m², falling
+  double area = 0;                  ///< m²
+  double volume = 0;                ///< m³
+  double extent = 0;                ///< metres: standard deviation along the longest axis
+  bool is_flat =
+      false;  ///< one plane, or less than 5 cm thick: whitening would make noise its shape
+};
+
+struct DescriptorOptions {
+  int pairs = 100000;  ///< point pairs; below 50,000 the layers depend on the seed
+  std::uint64_t seed =
+      1;  ///< each segment's own seed is a hash of this, the building's name and the segment
+};
+
+/// One descriptor a segment, in order.
+std::vector<Descriptor> describe_segments(const Planes& planes, const Segments& segments,
+                                          const std::string& building,
+                                          const DescriptorOptions& options = {});
+
+/// dis(s, s') = eta ‖d2 − d2'‖₂ + ‖v_e − v_e'‖₁ / (‖v_e‖₁ + ‖v_e'‖₁). Symmetric, ≥ 0, 0 for equal
+/// descriptors.
+double segment_distance(const Descriptor& a, const Descriptor& b, double eta);
+/// Sim = exp(−dis), in (0, 1].
+double segment_similarity(const Descriptor& a, const Descriptor& b, double eta);
+
+}  // namespace colod
