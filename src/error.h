@@ -6,14 +6,14 @@
 
 namespace colod {
 
-/// Exit codes of the command line (DESIGN: 0 all done, 1 some buildings failed).
+/// Exit codes of the command line; 0 is all done, 1 some buildings failed.
 enum class Stage { kUsage = 2, kInput = 3, kProcess = 4, kOutput = 5 };
 
 /// Caught once in main, and once per building in the pipeline. `item` names the file, building or
-/// option.
+/// option; what() is one line: "item: message".
 struct Error : std::runtime_error {
-  Error(Stage stage, std::string item, const std::string& message)
-      : std::runtime_error(item + ": " + message), stage(stage), item(std::move(item)) {}
+  Error(Stage where, std::string what_item, const std::string& message)
+      : std::runtime_error(what_item + ": " + message), stage(where), item(std::move(what_item)) {}
   Stage stage;
   std::string item;
 };

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <memory>
 
@@ -23,8 +24,12 @@ void parallel_ranges(std::size_t n, std::size_t grain,
     if (n > 0) body(0, n);
     return;
   }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                    [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+  // Isolated: a thread that waits for an inner loop must not start another building of an outer
+  // one, which would keep more of them in memory than there are threads.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+  });
 }
 
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, std::size_t grain) {
