@@ -8,22 +8,30 @@
 namespace colod {
 
 struct Validity {
-  int vertices = 0, faces = 0;
+  int vertices = 0, faces = 0;  ///< as given, before welding
   int polygons = 0;  ///< maximal connected sets of coplanar faces (exactly given by the caller, or
                      ///< found within 1e-4 m / 0.1°)
   bool is_watertight = false;  ///< every edge is used exactly once in each direction, vertices
-                               ///< welded at equal coordinates first
+                               ///< welded at equal coordinates first; no face collapses in it
   bool is_manifold =
       false;  ///< watertight or bounded, and every edge has ≤ 2 faces and every vertex one fan
-  std::int64_t boundary_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0;
+  std::int64_t boundary_edges = 0;     ///< used by one face
+  std::int64_t nonmanifold_edges = 0;  ///< used by three or more
+  std::int64_t misoriented_edges = 0;  ///< used by two faces in the same direction
+  std::int64_t nonmanifold_vertices =
+      0;  ///< more than one fan of faces; non-manifold edges part fans
   std::int64_t self_intersections =
       0;  ///< intersecting face pairs that share no vertex/edge legitimately
-  std::int64_t degenerate_faces = 0;  ///< zero area in doubles
-  int components = 0;
-  double volume = 0;  ///< m³, signed
+  std::int64_t degenerate_faces = 0;  ///< zero area in doubles, or a coordinate that is not finite
+                                      ///< (counted here and ignored elsewhere)
+  int components = 0;  ///< sets of faces connected over edges
+  double volume = 0;   ///< m³, signed
   double area = 0;
 };
 
+/// Never throws; a mesh without faces is neither watertight nor manifold. Touching counts as
+/// intersecting; faces that share an edge intersect when they fold onto each other, equal faces
+/// always do. Degenerate faces are left out of the intersections. Deterministic, runs in parallel.
 /// `check_self_intersections` is the slow part (CGAL, O(n log n)).
 Validity check_validity(const Mesh& mesh, bool check_self_intersections = true);
 
@@ -39,11 +47,13 @@ struct Distances {
   double rms_a_to_b = 0, rms_b_to_a = 0;    ///< metres
 };
 
-/// Surface to surface. Both meshes need a face.
+/// Surface to surface. Maxima are over samples and vertices, means over the samples only. Both
+/// meshes need a finite face with an area, else Error. Never NaN; `relative` divides by 1 where a
+/// has no extent. Deterministic, runs in parallel.
 Distances measure_distances(const Mesh& a, const Mesh& b, const DistanceOptions& options = {});
 
 /// From a source (mesh surface, or the points of a cloud) to a model, and back (back to a cloud: to
-/// its nearest point).
+/// its nearest point). All points of a cloud are used; those not finite are left out.
 Distances measure_distances(const Source& a, const Mesh& b, const DistanceOptions& options = {});
 
 }  // namespace colod

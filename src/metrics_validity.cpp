@@ -1,0 +1,340 @@
+// Based on: the usual definition of a 2-manifold by fans of faces around vertices; self
+// intersections as in CGAL's Polygon Mesh Processing (boxes, then exact predicates by the number of
+// shared vertices), on a soup instead of a half-edge mesh so that non-manifold input is accepted.
+// Differs: no --rules here. Notation: none.
+#include <CGAL/Bbox_3.h>
+#include <CGAL/Box_intersection_d/Box_with_handle_d.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "metrics.h"
+#include "parallel.h"
+
+namespace colod {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using FaceBox = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Face*>;
+
+constexpr double kCoplanarDistance = 1e-4;  // m
+constexpr double kCoplanarAngleDeg = 0.1;
+constexpr double kReliableHeight = 5e-3;       // m; a thinner face's normal says little
+constexpr std::size_t kPairsAtOnce = 1 << 20;  // bounds the memory of the candidate pairs
+
+/// The faces worth looking at, over welded vertices.
+struct Welded {
+  std::vector<Vec3> points;
+  std::vector<Face> faces;     // three different vertices each, all finite
+  std::int64_t collapsed = 0;  // faces that lost a vertex by welding, or are not finite
+};
+
+bool is_less(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+Welded weld(const Mesh& mesh) {
+  std::vector<int> order;
+  for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i)
+    if (mesh.vertices[i].allFinite()) order.push_back(i);
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return is_less(mesh.vertices[i], mesh.vertices[j]); });
+  Welded welded;
+  std::vector<int> point_of_vertex(mesh.vertices.size(), -1);
+  for (int i : order) {
+    if (welded.points.empty() || welded.points.back() != mesh.vertices[i])
+      welded.points.push_back(mesh.vertices[i]);
+    point_of_vertex[i] = static_cast<int>(welded.points.size()) - 1;
+  }
+  for (const Face& f : mesh.faces) {
+    const Face g = {point_of_vertex[f[0]], point_of_vertex[f[1]], point_of_vertex[f[2]]};
+    const bool is_face =
+        std::min({g[0], g[1], g[2]}) >= 0 && g[0] != g[1] && g[1] != g[2] && g[2] != g[0];
+    if (is_face) welded.faces.push_back(g);
+    welded.collapsed += !is_face;
+  }
+  return welded;
+}
+
+/// One use of an edge by a face; sorted, the uses of one edge are neighbours.
+struct EdgeUse {
+  int low, high;   // vertices
+  int face, side;  // side s of a face runs from its vertex s to its vertex s + 1
+  bool is_forward;
+
+  bool operator<(const EdgeUse& o) const {
+    return std::tie(low, high, face, side) < std::tie(o.low, o.high, o.face, o.side);
+  }
+  bool is_same_edge(const EdgeUse& o) const { return low == o.low && high == o.high; }
+};
+
+std::vector<EdgeUse> sorted_edge_uses(const std::vector<Face>& faces) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * faces.size());
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+    for (int s = 0; s < 3; ++s) {
+      const int a = faces[f][s], b = faces[f][(s + 1) % 3];
+      uses.push_back({std::min(a, b), std::max(a, b), f, s, a < b});
+    }
+  std::sort(uses.begin(), uses.end());
+  return uses;
+}
+
+/// Calls visit(first, last) for the uses of each edge.
+template <typename Visit>
+void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i + 1; j < uses.size() && uses[j].is_same_edge(uses[i]);) ++j;
+    visit(i, j);
+  }
+}
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(int i, int j) {
+    const int a = find(i), b = find(j);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+  int count_roots() const {
+    int roots = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == static_cast<int>(i);
+    return roots;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+void count_edges(const std::vector<EdgeUse>& uses, Validity& v) {
+  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
+    const std::size_t n = last - first;
+    v.boundary_edges += n == 1;
+    v.nonmanifold_edges += n > 2;
+    v.misoriented_edges += n == 2 && uses[first].is_forward == uses[first + 1].is_forward;
+  });
+}
+
+/// Corners (a face at one of its vertices) are joined over edges with two faces; a vertex with more
+/// than one set of corners is where surfaces merely touch.
+std::int64_t count_nonmanifold_vertices(const Welded& m, const std::vector<EdgeUse>& uses) {
+  UnionFind fans(3 * m.faces.size());
+  const auto corner = [&](const EdgeUse& use, int vertex) {
+    const int k = m.faces[use.face][use.side] == vertex ? use.side : (use.side + 1) % 3;
+    return 3 * use.face + k;
+  };
+  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
+    if (last - first != 2) return;
+    for (int vertex : {uses[first].low, uses[first].high})
+      fans.join(corner(uses[first], vertex), corner(uses[first + 1], vertex));
+  });
+  std::vector<int> fans_of(m.points.size(), 0);
+  for (int c = 0; c < static_cast<int>(3 * m.faces.size()); ++c)
+    fans_of[m.faces[c / 3][c % 3]] += fans.find(c) == c;
+  return std::count_if(fans_of.begin(), fans_of.end(), [](int n) { return n > 1; });
+}
+
+int count_components(const Welded& m, const std::vector<EdgeUse>& uses) {
+  UnionFind sets(m.faces.size());
+  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first + 1; i < last; ++i) sets.join(uses[first].face, uses[i].face);
+  });
+  return sets.count_roots();
+}
+
+/// Neighbours over edges with exactly two faces, −1: none.
+std::vector<std::array<int, 3>> face_neighbours(const Welded& m, const std::vector<EdgeUse>& uses) {
+  std::vector<std::array<int, 3>> neighbours(m.faces.size(), {-1, -1, -1});
+  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
+    if (last - first != 2) return;
+    const EdgeUse &a = uses[first], &b = uses[first + 1];
+    neighbours[a.face][a.side] = b.face;
+    neighbours[b.face][b.side] = a.face;
+  });
+  return neighbours;
+}
+
+/// A face's unit normal (zero when degenerate), area and height over its longest side.
+struct FaceShape {
+  Vec3 normal = Vec3::Zero();
+  double area = 0, height = 0;
+};
+
+FaceShape face_shape(const Welded& m, const Face& f) {
+  const Vec3 a = m.points[f[0]], ab = m.points[f[1]] - a, ac = m.points[f[2]] - a;
+  const Vec3 cross = ab.cross(ac);
+  const double twice = cross.norm();
+  FaceShape shape;
+  if (!(twice > 0)) return shape;
+  shape.normal = cross / twice;
+  shape.area = 0.5 * twice;
+  shape.height = twice / std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+  return shape;
+}
+
+/// Grown from the largest face left, every face judged against the seed's plane, so that a gently
+/// curved surface does not count as one polygon.
+int count_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
+                   const std::vector<FaceShape>& shapes) {
+  const auto neighbours = face_neighbours(m, uses);
+  const double min_cos = std::cos(kCoplanarAngleDeg * M_PI / 180);
+  std::vector<int> order(m.faces.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int i, int j) { return shapes[i].area > shapes[j].area; });
+  std::vector<char> is_taken(m.faces.size(), 0);
+  const auto is_coplanar = [&](int seed, int face) {
+    const double cos = shapes[seed].normal.dot(shapes[face].normal);
+    if (cos < (shapes[face].height < kReliableHeight ? 0.0 : min_cos)) return false;
+    const Vec3 base = m.points[m.faces[seed][0]];
+    for (int v : m.faces[face])
+      if (!(std::abs(shapes[seed].normal.dot(m.points[v] - base)) <= kCoplanarDistance))
+        return false;
+    return true;
+  };
+  int polygons = 0;
+  for (int seed : order) {
+    if (is_taken[seed] || shapes[seed].area == 0) continue;  // a degenerate face is no polygon
+    ++polygons;
+    std::vector<int> stack = {seed};
+    is_taken[seed] = 1;
+    while (!stack.empty()) {
+      const int face = stack.back();
+      stack.pop_back();
+      for (int next : neighbours[face])
+        if (next >= 0 && !is_taken[next] && is_coplanar(seed, next)) {
+          is_taken[next] = 1;
+          stack.push_back(next);
+        }
+    }
+  }
+  return polygons;
+}
+
+/// Exact tests on pairs of faces, by the vertices that they share.
+class FacePairs {
+ public:
+  explicit FacePairs(const Welded& m) : faces_(m.faces) {
+    points_.reserve(m.points.size());
+    for (const Vec3& p : m.points) points_.emplace_back(p.x(), p.y(), p.z());
+  }
+
+  bool is_degenerate(int face) const {
+    const Face& f = faces_[face];
+    return CGAL::collinear(points_[f[0]], points_[f[1]], points_[f[2]]);
+  }
+
+  bool do_intersect(int i, int j) const {
+    int shared[3], n = 0;  // corners of i that j has too
+    for (int k = 0; k < 3; ++k)
+      if (corner_of(j, faces_[i][k]) >= 0) shared[n++] = k;
+    if (n == 0) return CGAL::do_intersect(triangle(i), triangle(j));
+    if (n == 1)
+      return touches_opposite(i, shared[0], j) ||
+             touches_opposite(j, corner_of(j, faces_[i][shared[0]]), i);
+    return n == 3 || is_folded(i, 3 - shared[0] - shared[1], j);
+  }
+
+ private:
+  int corner_of(int face, int vertex) const {
+    const Face& f = faces_[face];
+    for (int k = 0; k < 3; ++k)
+      if (f[k] == vertex) return k;
+    return -1;
+  }
+  Kernel::Triangle_3 triangle(int face) const {
+    const Face& f = faces_[face];
+    return {points_[f[0]], points_[f[1]], points_[f[2]]};
+  }
+  bool touches_opposite(int face, int corner, int other) const {
+    const Face& f = faces_[face];
+    const Kernel::Segment_3 side(points_[f[(corner + 1) % 3]], points_[f[(corner + 2) % 3]]);
+    return CGAL::do_intersect(side, triangle(other));
+  }
+  /// Coplanar neighbours whose free corners lie on the same side of the common edge.
+  bool is_folded(int i, int free_corner, int j) const {
+    const Face& f = faces_[i];
+    const int a = f[(free_corner + 1) % 3], b = f[(free_corner + 2) % 3];
+    const int d = faces_[j][3 - corner_of(j, a) - corner_of(j, b)];
+    const Point &pa = points_[a], &pb = points_[b], &pc = points_[f[free_corner]], &pd = points_[d];
+    return CGAL::coplanar(pa, pb, pc, pd) &&
+           CGAL::coplanar_orientation(pa, pb, pc, pd) == CGAL::POSITIVE;
+  }
+
+  const std::vector<Face>& faces_;
+  std::vector<Point> points_;
+};
+
+std::int64_t count_intersecting(const FacePairs& tests,
+                                const std::vector<std::pair<int, int>>& pairs) {
+  constexpr std::size_t kGrain = 256;
+  const std::size_t blocks = (pairs.size() + kGrain - 1) / kGrain;
+  std::vector<std::int64_t> found(blocks, 0);
+  parallel_for(blocks, [&](std::size_t b) {
+    for (std::size_t i = b * kGrain; i < std::min(pairs.size(), (b + 1) * kGrain); ++i)
+      found[b] += tests.do_intersect(pairs[i].first, pairs[i].second);
+  });
+  return std::accumulate(found.begin(), found.end(), std::int64_t{0});
+}
+
+std::int64_t count_self_intersections(const Welded& m) {
+  const FacePairs tests(m);
+  std::vector<FaceBox> boxes;
+  for (int f = 0; f < static_cast<int>(m.faces.size()); ++f) {
+    if (tests.is_degenerate(f)) continue;
+    Box box;
+    for (int v : m.faces[f]) box.extend(m.points[v]);
+    boxes.emplace_back(
+        CGAL::Bbox_3(box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()),
+        &m.faces[f]);
+  }
+  std::int64_t found = 0;
+  std::vector<std::pair<int, int>> pairs;
+  const auto collect = [&](const FaceBox& a, const FaceBox& b) {
+    pairs.emplace_back(a.handle() - m.faces.data(), b.handle() - m.faces.data());
+    if (pairs.size() < kPairsAtOnce) return;
+    found += count_intersecting(tests, pairs);
+    pairs.clear();
+  };
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), collect);
+  return found + count_intersecting(tests, pairs);
+}
+
+}  // namespace
+
+Validity check_validity(const Mesh& mesh, bool check_self_intersections) {
+  Validity v;
+  v.vertices = static_cast<int>(mesh.vertices.size());
+  v.faces = static_cast<int>(mesh.faces.size());
+  const Welded welded = weld(mesh);
+  const std::vector<EdgeUse> uses = sorted_edge_uses(welded.faces);
+  std::vector<FaceShape> shapes;
+  for (const Face& f : welded.faces) shapes.push_back(face_shape(welded, f));
+
+  v.degenerate_faces = welded.collapsed;
+  for (const FaceShape& s : shapes) {
+    v.degenerate_faces += s.area == 0;
+    v.area += s.area;
+  }
+  count_edges(uses, v);
+  v.nonmanifold_vertices = count_nonmanifold_vertices(welded, uses);
+  v.components = count_components(welded, uses);
+  v.polygons = count_polygons(welded, uses, shapes);
+  v.volume = signed_volume({welded.points, welded.faces});
+  const bool has_faces = !welded.faces.empty();
+  v.is_manifold = has_faces && v.nonmanifold_edges == 0 && v.nonmanifold_vertices == 0;
+  v.is_watertight = has_faces && v.boundary_edges == 0 && v.nonmanifold_edges == 0 &&
+                    v.misoriented_edges == 0 && welded.collapsed == 0;
+  if (check_self_intersections) v.self_intersections = count_self_intersections(welded);
+  return v;
+}
+
+}  // namespace colod
