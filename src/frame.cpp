@@ -1,6 +1,8 @@
-// Differs: the paper has no such step. Voxels and rays follow the axes: without it a turned
-// building is another building. building is another building. Notation: w = area of a face (or 1
-// for a point), theta = direction of a wall's normal modulo 90 degrees.
+// Differs: the paper has no such step. Voxels and rays follow the axes: without it a turned building
+// is another building.
+//
+// Notation: weight = area of a face in mm² (1 for a point), theta = direction of a wall's normal
+// modulo 90 degrees.
 
 #include "frame.h"
 

@@ -16,7 +16,8 @@ TEST_CASE("the gable house is closed and has the volume of box and prism") {
 }
 
 TEST_CASE("a plane's basis is right-handed and horizontal in u") {
-  for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, 3).normalized().eval(), Vec3(0, -1, 0)}) {
+  for (const Vec3& n :
+       {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, 3).normalized().eval(), Vec3(0, -1, 0)}) {
     const auto [u, v] = plane_basis(n);
     CHECK((u.cross(v) - n).norm() < 1e-12);
     CHECK(std::abs(u.z()) < 1e-12);

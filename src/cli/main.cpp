@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "../error.h"
+#include "cli.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "colod: chains of clean, watertight levels of detail, consistent over all buildings of a "
+      "scene"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "colod " COLOD_VERSION);
+  std::vector<std::pair<CLI::App*, colod::cli::Run>> commands;
+  const auto add = [&](const char* name, const char* help, colod::cli::Run (*make)(CLI::App&)) {
+    CLI::App* command = app.add_subcommand(name, help);
+    commands.emplace_back(command, make(*command));
+  };
+  add("build", "buildings in, LOD chains and a 3D Tiles tileset out", colod::cli::add_build);
+  add("eval", "metrics of one mesh against another, JSON on stdout", colod::cli::add_eval);
+  add("info", "what a mesh, GLB or tileset holds, JSON on stdout", colod::cli::add_info);
+  add("synth", "a procedural neighbourhood with ground truth", colod::cli::add_synth);
+  add("preview", "pictures of meshes side by side, as one PNG", colod::cli::add_preview);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const bool is_request = e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    app.exit(e);
+    return is_request ? 0 : static_cast<int>(colod::Stage::kUsage);
+  }
+  for (const auto& [command, action] : commands)
+    if (command->parsed()) return action();
+  return static_cast<int>(colod::Stage::kUsage);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const colod::Error& e) {
+    std::fprintf(stderr, "colod: %s\n", e.what());
+    return static_cast<int>(e.stage);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "colod: %s\n", e.what());
+    return static_cast<int>(colod::Stage::kProcess);
+  }
+}

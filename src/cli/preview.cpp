@@ -1,0 +1,76 @@
+#include "../preview.h"
+
+#include <filesystem>
+#include <memory>
+
+#include "../../exporters/files.h"
+#include "../frame.h"
+#include "../parallel.h"
+#include "cli.h"
+#include "input_options.h"
+
+namespace colod::cli {
+namespace {
+
+struct PreviewArguments {
+  std::vector<std::string> files;
+  std::string out;
+  ReadOptions read;
+  PreviewOptions preview;
+  int columns = 4, threads = 0;
+};
+
+Image render(const Source& source, const PreviewOptions& options) {
+  return source.is_mesh() ? render_preview(source.mesh, options)
+                          : render_preview(source.cloud, options);
+}
+
+/// Meshes of one row share the camera, so that they can be compared.
+int preview(const PreviewArguments& a) {
+  limit_threads(a.threads);
+  std::vector<Image> images;
+  std::vector<std::string> captions;
+  for (std::size_t row = 0; row < a.files.size(); row += a.columns) {
+    const std::size_t end = std::min(a.files.size(), row + a.columns);
+    std::vector<Source> sources;
+    PreviewOptions options = a.preview;
+    for (std::size_t i = row; i < end; ++i) {
+      sources.push_back(read_single(a.files[i], a.read));
+      const Source& s = sources.back();
+      if (i == row) options.box = bounding_box(s.is_mesh() ? s.mesh.vertices : s.cloud.points);
+    }
+    for (const Source& s : sources) {
+      images.push_back(render(s, options));
+      const std::string size = s.is_mesh() ? std::to_string(s.mesh.faces.size()) + " faces"
+                                           : std::to_string(s.cloud.points.size()) + " points";
+      captions.push_back(std::filesystem::path(s.path).stem().string() + ", " + size);
+    }
+  }
+  const std::filesystem::path out(a.out);
+  const std::string folder = out.has_parent_path() ? out.parent_path().string() : ".";
+  write_file(folder,
+             {out.filename().string(), encode_png(contact_sheet(images, captions, a.columns))});
+  return 0;
+}
+
+}  // namespace
+
+Run add_preview(CLI::App& app) {
+  auto a = std::make_shared<PreviewArguments>();
+  app.add_option("FILE", a->files, "meshes or points; each row has the camera of its first")
+      ->required();
+  app.add_option("-o,--out", a->out, "PNG to write")->required();
+  add_input_options(app, a->read);
+  app.add_option("--columns", a->columns, "pictures a row, default 4")->check(CLI::Range(1, 100));
+  app.add_option("--width", a->preview.width, "of a picture")->check(CLI::Range(16, 8192));
+  app.add_option("--height", a->preview.height, "of a picture")->check(CLI::Range(16, 8192));
+  app.add_option("--azimuth", a->preview.azimuth_deg,
+                 "where the camera stands [deg], 0 = south of the building");
+  app.add_option("--elevation", a->preview.elevation_deg, "of the camera [deg]")
+      ->check(CLI::Range(-90.0, 90.0));
+  app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
+      ->check(CLI::Range(0, 4096));
+  return [a] { return preview(*a); };
+}
+
+}  // namespace colod::cli

@@ -1,0 +1,210 @@
+// Differs: a building that fails keeps its place with the reason, and a coarser layer that came out
+// richer than the finer one takes the finer one's mesh, so that detail never decreases along a
+// chain.
+
+#include "pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "error.h"
+#include "parallel.h"
+
+namespace colod {
+namespace {
+
+/// Adds the seconds of its life to a counter.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds)
+      : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
+
+void find_segments(Building& b, const Options& o) {
+  {
+    Stopwatch watch(b.timings.planes);
+    b.planes = detect_planes(b.source, {.is_paper = is_paper(o),
+                                        .distance = o.distance,
+                                        .angle_deg = o.angle_deg,
+                                        .min_points = o.min_points});
+  }
+  b.segments = build_segments(
+      b.planes, {.is_paper = is_paper(o),
+                 .alcove_area = o.alcove_area,
+                 .visibility = {.ns = o.ns, .nr = o.nr, .is_party_wall_rule = !is_paper(o)}});
+  b.timings.visibility = b.segments.visibility_seconds;
+  b.timings.segments = b.segments.aggregation_seconds;
+  Stopwatch watch(b.timings.similarity);
+  b.descriptors = describe_segments(b.planes, b.segments, b.source.name, {.seed = o.seed});
+}
+
+/// The order of cutting: planes of coarse layers first, so that a finer partition refines the
+/// coarser one.
+std::vector<int> cutting_order(const Building& b, int k) {
+  std::vector<int> order;
+  std::vector<char> is_taken(b.planes.planes.size(), 0);
+  for (int layer = 0; layer <= k; ++layer)
+    for (int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, layer))
+      if (!is_taken[plane]) is_taken[plane] = 1, order.push_back(plane);
+  return order;
+}
+
+void extract(Building& b, Layer& layer, const RayScene& rays, const Options& o) {
+  try {
+    const std::vector<int> planes = cutting_order(b, layer.layer);
+    Extraction result =
+        extract_layer(b.planes, planes, rays, {.is_paper = is_paper(o), .nr = o.nr});
+    layer.mesh = std::move(result.mesh);
+    for (const std::string& w : result.warnings)
+      b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
+  } catch (const Error& e) {
+    layer.failure = e.what();
+  }
+}
+
+bool is_richer(const PolygonMesh& a, const PolygonMesh& b) {
+  return a.vertices.size() > b.vertices.size() || a.triangles.size() > b.triangles.size() ||
+         a.facets.size() > b.facets.size();
+}
+
+void keep_detail_rising(Building& b) {
+  for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
+    Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
+    if (!coarse.failure.empty() || !fine.failure.empty() || !is_richer(coarse.mesh, fine.mesh))
+      continue;
+    b.warnings.push_back("layer " + std::to_string(k) + " was richer than layer " +
+                         std::to_string(k + 1) + " and takes its mesh");
+    coarse.mesh = fine.mesh;
+  }
+}
+
+/// From the building's frame to axes parallel to the world's.
+void unturn(PolygonMesh& mesh, const Frame& frame) {
+  const Frame turn{Vec3::Zero(), frame.yaw};
+  for (Vec3& v : mesh.vertices) v = turn.to_world(v);
+  for (auto& f : mesh.facets) f.normal = turn.to_world(f.normal);
+}
+
+void measure(const Building& b, Layer& layer) {
+  layer.distances = measure_distances(b.source, layer.mesh.mesh());
+  layer.validity = check_validity(layer.mesh.mesh());
+  layer.validity.polygons = static_cast<int>(layer.mesh.facets.size());
+  layer.geometric_error = layer.distances.a_to_b;
+}
+
+}  // namespace
+
+bool Building::has_failed() const {
+  return !failure.empty() || std::any_of(layers.begin(), layers.end(),
+                                         [](const Layer& l) { return !l.failure.empty(); });
+}
+
+Building segment_building(Source source, const Options& options) {
+  Building b;
+  try {
+    b.frame = main_frame(source);
+    b.source = localize(source, b.frame);
+    find_segments(b, options);
+  } catch (const Error& e) {
+    b.failure = e.what();
+  } catch (const std::exception& e) {  // a library gave up: this building's problem only
+    b.failure = source.name + ": " + e.what();
+  }
+  if (b.source.name.empty()) b.source.name = source.name, b.source.path = source.path;
+  append(b.warnings, b.source.warnings);
+  append(b.warnings, b.planes.warnings);
+  append(b.warnings, b.segments.warnings);
+  return b;
+}
+
+void analyze_scene(Scene& scene, const Options& options) {
+  Stopwatch watch(scene.coanalysis_seconds);
+  std::vector<SelectionBuilding> input;
+  for (const Building& b : scene.buildings) input.push_back({b.descriptors, b.segments.coverage});
+  scene.selection = select_layer0(input, {.is_paper = is_paper(options),
+                                          .beta = options.beta,
+                                          .lambda = options.lambda,
+                                          .eta = options.eta,
+                                          .seed = options.seed});
+  std::vector<Descriptor> rest;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i)
+    for (std::size_t s = 0; s < scene.buildings[i].descriptors.size(); ++s)
+      if (!scene.selection.is_layer0[i][s]) rest.push_back(scene.buildings[i].descriptors[s]);
+  scene.clustering = cluster_segments(rest, {.is_paper = is_paper(options),
+                                             .layers = options.layers,
+                                             .eta = options.eta,
+                                             .seed = options.seed});
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
+    Building& b = scene.buildings[i];
+    b.layer_of_segment.assign(b.descriptors.size(), 0);
+    for (std::size_t s = 0; s < b.descriptors.size(); ++s)
+      if (!scene.selection.is_layer0[i][s]) b.layer_of_segment[s] = scene.clustering.layer[next++];
+  }
+}
+
+void mesh_building(Building& b, const Options& options) {
+  if (!b.failure.empty()) return;
+  try {
+    const RayScene rays(outline_soup(b.planes));
+    for (int k = 0; k < options.layers; ++k) {
+      Layer layer{.layer = k};
+      layer.segments = static_cast<int>(std::count_if(
+          b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
+      Stopwatch watch(b.timings.extraction);
+      extract(b, layer, rays, options);
+      b.layers.push_back(std::move(layer));
+    }
+    keep_detail_rising(b);
+    Stopwatch watch(b.timings.measure);
+    for (Layer& layer : b.layers)
+      if (layer.failure.empty()) measure(b, layer);
+    for (std::size_t k = b.layers.size() - 1; k-- > 0;)
+      b.layers[k].geometric_error =
+          std::max(b.layers[k].geometric_error, b.layers[k + 1].geometric_error);
+    for (Layer& layer : b.layers) unturn(layer.mesh, b.frame);
+  } catch (const std::exception& e) {
+    b.layers.clear();
+    b.failure = b.source.name + ": " + e.what();
+  }
+}
+
+Scene build_scene(ReadResult input, const Options& options, const Progress& progress) {
+  Scene scene;
+  scene.failures = std::move(input.failures);
+  scene.buildings.resize(input.sources.size());
+  std::mutex mutex;
+  const int total = static_cast<int>(input.sources.size());
+  int done = 0;
+  const auto report = [&](const Building& b, const char* stage) {
+    const std::lock_guard lock(mutex);
+    if (progress) progress(b.source.name, stage, ++done, total);
+  };
+  parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    scene.buildings[i] = segment_building(std::move(input.sources[i]), options);
+    report(scene.buildings[i], "segments");
+  });
+  analyze_scene(scene, options);
+  done = 0;
+  parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    mesh_building(scene.buildings[i], options);
+    report(scene.buildings[i], "layers");
+  });
+  return scene;
+}
+
+}  // namespace colod

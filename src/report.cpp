@@ -1,0 +1,118 @@
+#include "report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parameters_json(const Options& options) {
+  Json json;
+  json["rules"] = options.rules == Rules::kPaper ? "paper" : "robust";
+  for (const OptionInfo& info : option_table()) {
+    if (info.is_integer)
+      json[info.name] = static_cast<std::int64_t>(info.get(options));
+    else
+      json[info.name] = info.get(options);
+  }
+  return json;
+}
+
+Json layer_json(const Layer& layer) {
+  Json json{{"layer", layer.layer}, {"segments", layer.segments}};
+  if (!layer.failure.empty()) {
+    json["failure"] = layer.failure;
+    return json;
+  }
+  json["vertices"] = layer.validity.vertices;
+  json["faces"] = layer.validity.faces;
+  json["polygons"] = layer.validity.polygons;
+  json["watertight"] = layer.validity.is_watertight;
+  json["manifold"] = layer.validity.is_manifold;
+  json["self_intersections"] = layer.validity.self_intersections;
+  json["volume"] = layer.validity.volume;
+  json["hausdorff"] = layer.distances.a_to_b;
+  json["hausdorff_relative"] = layer.distances.relative;
+  json["mean_distance"] = layer.distances.mean_a_to_b;
+  json["geometric_error"] = layer.geometric_error;
+  return json;
+}
+
+Json building_json(const Building& b) {
+  Json json{
+      {"name", b.source.name},
+      {"source", b.source.path},
+      {"vertices",
+       b.source.is_mesh() ? b.source.mesh.vertices.size() : b.source.cloud.points.size()},
+      {"faces", b.source.mesh.faces.size()},
+      {"planes", b.planes.planes.size()},
+      {"segments", b.segments.segments.size()},
+      {"prior", false},
+      {"diagonal", bounding_box(b.source.is_mesh() ? b.source.mesh.vertices : b.source.cloud.points)
+                       .diagonal()},
+      {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+  json["layers"] = Json::array();
+  for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
+  json["timings"] = {{"read", b.timings.read},
+                     {"planes", b.timings.planes},
+                     {"visibility", b.timings.visibility},
+                     {"segments", b.timings.segments},
+                     {"similarity", b.timings.similarity},
+                     {"extraction", b.timings.extraction},
+                     {"measure", b.timings.measure},
+                     {"export", b.timings.export_}};
+  json["warnings"] = b.warnings;
+  if (!b.failure.empty()) json["failure"] = b.failure;
+  return json;
+}
+
+Json coanalysis_json(const Scene& scene) {
+  std::size_t segments = 0;
+  for (const Building& b : scene.buildings) segments += b.segments.segments.size();
+  std::vector<std::string> warnings = scene.selection.warnings;
+  warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
+                  scene.clustering.warnings.end());
+  return {{"segments", segments},
+          {"buildings", scene.buildings.size()},
+          {"objective", scene.selection.objective},
+          {"bound", scene.selection.bound},
+          {"gap", scene.selection.gap},
+          {"status", to_string(scene.selection.status)},
+          {"seconds", scene.coanalysis_seconds},
+          {"warnings", warnings}};
+}
+
+}  // namespace
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string report_json(const Scene& scene, const Options& options, const RunTotals& totals) {
+  std::uint64_t rays = 0;
+  double ray_seconds = 0;
+  for (const Building& b : scene.buildings)
+    rays += b.segments.rays, ray_seconds += b.segments.visibility_seconds;
+  Json json;
+  json["colod"] = COLOD_VERSION;
+  json["parameters"] = parameters_json(options);
+  json["totals"] = {
+      {"seconds", totals.seconds},
+      {"peak_memory_bytes", totals.peak_memory_bytes},
+      {"rays", rays},
+      {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
+  json["coanalysis"] = coanalysis_json(scene);
+  json["buildings"] = Json::array();
+  for (const Building& b : scene.buildings) json["buildings"].push_back(building_json(b));
+  json["failures"] = Json::array();
+  for (const ReadFailure& f : scene.failures)
+    json["failures"].push_back({{"source", f.path}, {"message", f.message}});
+  return json.dump(2) + "\n";
+}
+
+}  // namespace colod
