@@ -1,0 +1,348 @@
+// Based on: nothing published; what the formats' writers get wrong decides what is checked.
+// Differs: --rules does not matter here.
+#include "mesh_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include "mesh_io_formats.h"
+
+namespace colod {
+
+namespace fs = std::filesystem;
+using mesh_io::RawFile;
+
+namespace {
+
+constexpr const char* kExtensions[] = {".obj",  ".ply", ".off", ".stl",
+                                       ".gltf", ".glb", ".xyz", ".pwn"};
+constexpr double kFarthest = 1e12;  // beyond it squares and products of coordinates lose all digits
+
+std::string lower(std::string s) {
+  for (char& c : s)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return s;
+}
+
+bool is_supported(const fs::path& path) {
+  const std::string e = lower(path.extension().string());
+  return std::find(std::begin(kExtensions), std::end(kExtensions), e) != std::end(kExtensions);
+}
+
+/// The files to read, in order and without repetition.
+std::vector<std::string> list_files(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files;
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (fs::is_directory(input, error)) {
+      std::vector<std::string> found;
+      for (const fs::directory_entry& entry : fs::directory_iterator(input, error))
+        if (!entry.is_directory() && is_supported(entry.path()))
+          found.push_back(entry.path().string());
+      if (error) throw Error(Stage::kInput, input, error.message());
+      if (found.empty())
+        throw Error(Stage::kInput, input,
+                    "the folder holds no file that can be read (obj, ply, off, stl, gltf, glb, "
+                    "xyz, pwn)");
+      std::sort(found.begin(), found.end());
+      files.insert(files.end(), found.begin(), found.end());
+    } else if (fs::exists(input, error)) {
+      files.push_back(input);
+    } else {
+      throw Error(Stage::kInput, input, "no such file or folder");
+    }
+  }
+  std::set<std::string> seen;
+  std::erase_if(files, [&](const std::string& f) {
+    return !seen.insert(fs::path(f).lexically_normal().string()).second;
+  });
+  return files;
+}
+
+std::string read_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) mesh_io::fail(path, "cannot be opened");
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (file.bad()) mesh_io::fail(path, "cannot be read to its end");
+  if (bytes.empty()) mesh_io::fail(path, "the file is empty");
+  if (bytes.size() > (std::size_t{1} << 31)) mesh_io::fail(path, "larger than 2 GiB");
+  return bytes;
+}
+
+RawFile read_raw(const std::string& path) {
+  const std::string e = lower(fs::path(path).extension().string());
+  if (!is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
+  const std::string bytes = read_bytes(path);
+  if (e == ".obj") return mesh_io::read_obj(path, bytes);
+  if (e == ".ply") return mesh_io::read_ply(path, bytes);
+  if (e == ".off") return mesh_io::read_off(path, bytes);
+  if (e == ".stl") return mesh_io::read_stl(path, bytes);
+  if (e == ".xyz" || e == ".pwn") return mesh_io::read_xyz(path, bytes, e == ".pwn");
+  return mesh_io::read_gltf(path, bytes);
+}
+
+std::string sanitize(const std::string& name) {
+  std::string safe;
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    const bool is_word = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                         (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '.';
+    if (u < 0x80 || u >= 0xC0) safe += is_word ? c : '_';  // one '_' for a UTF-8 character
+  }
+  if (safe.size() > 100) safe.resize(100);
+  if (safe.empty() || safe.find_first_not_of("._") == safe.npos) return "building";
+  if (safe.front() == '.') safe.front() = '_';
+  return safe;
+}
+
+bool is_usable(const Vec3& p) { return (p.array().abs() <= kFarthest).all(); }
+
+void check_indices(const std::string& path, const RawFile& raw) {
+  const int n = static_cast<int>(raw.points.size());
+  for (int f = 0; f < raw.face_count(); ++f)
+    for (int c = raw.face_begin[f]; c < raw.face_end(f); ++c)
+      if (raw.corners[c] < 0 || raw.corners[c] >= n)
+        mesh_io::fail(path, "face " + std::to_string(f) + " of " +
+                                std::to_string(raw.face_count()) + " names vertex " +
+                                std::to_string(raw.corners[c]) + " of " + std::to_string(n) +
+                                " (both counted from 0)");
+}
+
+Vec3 to_z_up(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
+
+/// Units, axes and origin; normals made unit length. Unusable points stay as they are.
+void place(RawFile& raw, const ReadOptions& options) {
+  const bool turns = options.is_y_up && !raw.is_turned;
+  for (Vec3& p : raw.points) p = (turns ? to_z_up(p) : p) * options.unit + raw.origin;
+  for (Vec3& n : raw.normals) {
+    if (turns) n = to_z_up(n);
+    const double length = n.norm();
+    n = length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(Vec3::Zero());
+  }
+}
+
+/// Equal points become one: point → the lowest index with these coordinates.
+std::vector<int> weld(const std::vector<Vec3>& points) {
+  std::vector<int> order(points.size()), first(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) {
+    const Vec3& p = points[i];
+    return std::make_tuple(is_usable(p) ? p.x() : INFINITY, is_usable(p) ? p.y() : INFINITY,
+                           is_usable(p) ? p.z() : INFINITY, i);
+  };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool is_equal =
+        k > 0 && is_usable(points[order[k]]) && points[order[k]] == points[order[k - 1]];
+    first[order[k]] = is_equal ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+/// The triangles of a file and the polygon each came from.
+struct Triangles {
+  std::vector<Face> faces;
+  std::vector<int> polygon;
+};
+
+/// Polygons with unusable corners are left out and counted in `dropped`.
+Triangles triangulate(const RawFile& raw, int& dropped) {
+  Triangles out;
+  std::vector<Vec3> ring;
+  for (int f = 0; f < raw.face_count(); ++f) {
+    ring.clear();
+    for (int c = raw.face_begin[f]; c < raw.face_end(f); ++c)
+      ring.push_back(raw.points[raw.corners[c]]);
+    if (!std::all_of(ring.begin(), ring.end(), is_usable)) {
+      ++dropped;
+      continue;
+    }
+    const int* corner = &raw.corners[raw.face_begin[f]];
+    for (const Face& t : mesh_io::triangulate_ring(ring)) {
+      out.faces.push_back({corner[t[0]], corner[t[1]], corner[t[2]]});
+      out.polygon.push_back(f);
+    }
+  }
+  return out;
+}
+
+/// The chosen triangles as one source, with only the vertices that they use, in the file's order.
+Source take(const RawFile& raw, const Triangles& all, const std::vector<int>& chosen) {
+  Source s;
+  std::vector<int> number(raw.points.size(), -1);
+  for (const int t : chosen)
+    for (const int v : all.faces[t]) number[v] = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = static_cast<int>(s.mesh.vertices.size());
+    s.mesh.vertices.push_back(raw.points[v]);
+  }
+  for (const int t : chosen) {
+    const Face& f = all.faces[t];
+    s.mesh.faces.push_back({number[f[0]], number[f[1]], number[f[2]]});
+    if (!raw.face_group.empty()) s.face_object.push_back(raw.face_group[all.polygon[t]]);
+  }
+  return s;
+}
+
+/// Connected components over shared (or equal) points: triangle → component, numbered by first
+/// triangle.
+std::vector<int> components(const RawFile& raw, const Triangles& all, int& count) {
+  std::vector<int> parent = weld(raw.points);
+  const auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Face& f : all.faces)
+    for (int i = 1; i < 3; ++i) {
+      const int a = root(f[0]), b = root(f[i]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<int> number(raw.points.size(), -1), result;
+  count = 0;
+  for (const Face& f : all.faces) {
+    int& c = number[root(f[0])];
+    if (c < 0) c = count++;
+    result.push_back(c);
+  }
+  return result;
+}
+
+bool has_area(const Mesh& m) {
+  return std::any_of(m.faces.begin(), m.faces.end(),
+                     [&](const Face& f) { return face_area(m, f) > 0; });
+}
+
+Source read_cloud(const std::string& path, const RawFile& raw) {
+  Source s;
+  const bool has_normals = raw.normals.size() == raw.points.size();
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    const bool is_good = is_usable(raw.points[i]) && (!has_normals || raw.normals[i].norm() > 0);
+    if (!is_good && ++dropped) continue;
+    s.cloud.points.push_back(raw.points[i]);
+    if (has_normals) s.cloud.normals.push_back(raw.normals[i]);
+  }
+  if (s.cloud.points.size() < 3)
+    mesh_io::fail(path, "neither a face nor 3 points with usable coordinates");
+  if (dropped > 0)
+    s.warnings.push_back(
+        std::to_string(dropped) +
+        " points left out: coordinate or normal not finite, or normal of no length");
+  if (!has_normals) s.warnings.push_back(mesh_io::estimate_normals(s.cloud));
+  return s;
+}
+
+/// Triangle → building, and the buildings' names after the file's stem ("" for the whole file).
+std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
+                       std::vector<std::string>& names) {
+  const bool has_parts = !raw.face_part.empty() && raw.parts.size() > 1;
+  std::vector<int> part(all.faces.size(), 0);
+  names = {""};
+  if (how == Split::kComponent) {
+    int count = 0;
+    part = components(raw, all, count);
+    if (count > 1) names.clear();
+    for (int c = 0; c < count && count > 1; ++c) names.push_back(std::to_string(c + 1));
+  } else if (how != Split::kNone && has_parts) {
+    names = raw.parts;
+    const bool has_nameless =
+        std::any_of(raw.face_part.begin(), raw.face_part.end(), [](int p) { return p < 0; });
+    if (has_nameless) names.push_back("rest");
+    for (std::size_t t = 0; t < part.size(); ++t) {
+      const int p = raw.face_part[all.polygon[t]];
+      part[t] = p >= 0 ? p : static_cast<int>(raw.parts.size());
+    }
+  }
+  return part;
+}
+
+/// Everything a file holds, split as asked. Throws when nothing in it is usable.
+std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
+  RawFile raw = read_raw(path);
+  check_indices(path, raw);
+  place(raw, options);
+  std::vector<Source> sources;
+  std::vector<std::string> names = {""};
+  if (raw.face_count() == 0) {
+    sources.push_back(read_cloud(path, raw));
+  } else {
+    if (raw.is_soup) {
+      const std::vector<int> first = weld(raw.points);
+      for (int& c : raw.corners) c = first[c];
+    }
+    int dropped = 0;
+    const Triangles all = triangulate(raw, dropped);
+    const std::vector<int> part = split(raw, all, options.split, names);
+    std::vector<std::vector<int>> chosen(names.size());
+    for (std::size_t t = 0; t < part.size(); ++t) chosen[part[t]].push_back(static_cast<int>(t));
+    for (const std::vector<int>& triangles : chosen) sources.push_back(take(raw, all, triangles));
+    if (dropped > 0)
+      raw.warnings.push_back(std::to_string(dropped) +
+                             " faces left out: a coordinate is not finite");
+  }
+  const std::string stem = fs::path(path).stem().string();
+  std::vector<Source> usable;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    Source& s = sources[i];
+    if (s.cloud.points.empty() && !has_area(s.mesh)) continue;
+    s.path = path;
+    s.name = sanitize(names[i].empty() ? stem : stem + "_" + names[i]);
+    s.warnings.insert(s.warnings.begin(), raw.warnings.begin(), raw.warnings.end());
+    usable.push_back(std::move(s));
+  }
+  if (usable.empty())
+    mesh_io::fail(path, "none of " + std::to_string(raw.face_count()) +
+                            " faces has a positive area and finite coordinates");
+  return usable;
+}
+
+/// Names differ even where upper and lower case do not; the later one by path and place changes.
+void make_unique(std::vector<Source>& sources) {
+  const auto by_name = [](const Source& a, const Source& b) {
+    return std::tie(a.name, a.path) < std::tie(b.name, b.path);
+  };
+  std::stable_sort(sources.begin(), sources.end(), by_name);
+  std::set<std::string> used;
+  for (const Source& s : sources) used.insert(lower(s.name));
+  std::set<std::string> given;
+  for (Source& s : sources) {
+    const std::string base = s.name;
+    for (int i = 2; !given.insert(lower(s.name)).second; ++i) do
+        s.name = base + "_" + std::to_string(i);
+      while (used.contains(lower(s.name)) && ++i);
+  }
+  std::stable_sort(sources.begin(), sources.end(), by_name);
+}
+
+}  // namespace
+
+ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options) {
+  ReadResult result;
+  for (const std::string& path : list_files(inputs)) {
+    try {
+      for (Source& s : read_file(path, options)) result.sources.push_back(std::move(s));
+    } catch (const Error& e) {
+      result.failures.push_back({path, std::string(e.what()).substr(e.item.size() + 2)});
+    }
+  }
+  make_unique(result.sources);
+  return result;
+}
+
+Source read_single(const std::string& path, const ReadOptions& options) {
+  std::error_code error;
+  if (!fs::exists(path, error)) throw Error(Stage::kInput, path, "no such file");
+  if (fs::is_directory(path, error)) throw Error(Stage::kInput, path, "this is a folder");
+  ReadOptions whole = options;
+  whole.split = Split::kNone;
+  return std::move(read_file(path, whole).front());
+}
+
+}  // namespace colod
