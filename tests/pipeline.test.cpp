@@ -1,0 +1,175 @@
+#include "../src/pipeline.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "../exporters/glb.h"
+#include "../exporters/tiles3d.h"
+#include "../src/parallel.h"
+#include "../src/report.h"
+#include "meshes.h"
+
+using namespace colod;
+
+namespace {
+
+/// A gable house with a chimney that stands on the roof, a porch and an extension: closed pieces
+/// that overlap.
+Source house(const std::string& name, double w = 12, double d = 9) {
+  Mesh m = test::gable_house(w, d, 6, 4);
+  m = test::join(m, test::box_mesh({w * 0.2, d * 0.3, 7}, {w * 0.2 + 1, d * 0.3 + 1.2, 11}));
+  m = test::join(m, test::box_mesh({w - 0.5, 1, 0}, {w + 4, d * 0.5, 3}));
+  m = test::join(m, test::box_mesh({w * 0.6, -2, 2.5}, {w * 0.6 + 3, 0.2, 3.6}));
+  return test::as_source(m, name);
+}
+
+Source transformed(Source s, double yaw_deg, const Vec3& by) {
+  const Eigen::AngleAxisd turn(yaw_deg * std::numbers::pi / 180, Vec3::UnitZ());
+  for (Vec3& p : s.mesh.vertices) p = turn * p + by;
+  return s;
+}
+
+Options small_options() {
+  Options o;
+  o.ns = 40;
+  o.nr = 60;
+  return o;
+}
+
+Scene build(std::vector<Source> sources, const Options& options = small_options()) {
+  return build_scene({std::move(sources), {}}, options);
+}
+
+void check_chain(const Building& b, int layers) {
+  INFO(b.source.name << " " << b.failure);
+  REQUIRE(b.layers.size() == static_cast<std::size_t>(layers));
+  for (std::size_t k = 0; k < b.layers.size(); ++k) {
+    INFO("layer " << k << " " << b.layers[k].failure);
+    CHECK(b.layers[k].validity.is_watertight);
+    CHECK(b.layers[k].validity.volume > 0);
+    if (k == 0) continue;
+    CHECK(b.layers[k].validity.faces >= b.layers[k - 1].validity.faces);
+    CHECK(b.layers[k].validity.vertices >= b.layers[k - 1].validity.vertices);
+    CHECK(b.layers[k].validity.polygons >= b.layers[k - 1].validity.polygons);
+    CHECK(b.layers[k].segments >= b.layers[k - 1].segments);
+    CHECK(b.layers[k].geometric_error <= b.layers[k - 1].geometric_error);
+  }
+}
+
+/// Segment sizes and the layers' counts: what must not depend on where a building stands.
+std::vector<double> signature(const Building& b) {
+  std::vector<double> s;
+  for (std::size_t i = 0; i < b.segments.segments.size(); ++i) {
+    s.push_back(static_cast<double>(b.segments.segments[i].planes.size()));
+    s.push_back(b.layer_of_segment[i]);
+  }
+  for (const Layer& l : b.layers) s.push_back(l.validity.faces), s.push_back(l.validity.vertices);
+  return s;
+}
+
+std::string report_without_times(const Scene& scene, const Options& options) {
+  auto json = nlohmann::json::parse(report_json(scene, options, {}));
+  json["totals"].clear();
+  json["coanalysis"]["seconds"] = 0;
+  for (auto& b : json["buildings"]) b["timings"].clear();
+  return json.dump();
+}
+
+std::string all_bytes(const Scene& scene) {
+  std::string bytes;
+  std::vector<ExportBuilding> buildings;
+  for (const Building& b : scene.buildings) {
+    ExportBuilding e{
+        .name = b.source.name, .source = b.source.path, .origin = b.frame.origin, .layers = {}};
+    for (const Layer& l : b.layers) e.layers.push_back({l.layer, l.mesh, l.geometric_error});
+    bytes += encode_building_glb(e).bytes;
+    buildings.push_back(std::move(e));
+  }
+  for (const Encoded& file : encode_tileset(buildings)) bytes += file.path + file.bytes;
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("houses become chains of watertight layers whose detail does not decrease") {
+  const Scene scene = build({house("a"), house("b", 14, 8), house("c", 11, 10)});
+  for (const Building& b : scene.buildings) {
+    check_chain(b, 3);
+    CHECK(b.layers.back().validity.volume == Approx(12 * 9 * 8).epsilon(0.5));
+  }
+  CHECK(scene.selection.bound >= scene.selection.objective - 1e-9);
+}
+
+TEST_CASE("the paper's rules run through the same rooms") {
+  Options options = small_options();
+  options.rules = Rules::kPaper;
+  for (const Building& b : build({house("a"), house("b", 14, 8)}, options).buildings)
+    CHECK(b.layers.size() == 3);
+}
+
+TEST_CASE("moving by 1e6 m, permuting triangles and quarter turns change no segment and no layer") {
+  const std::vector<double> reference = signature(build({house("a")}).buildings[0]);
+  CHECK(signature(build({transformed(house("a"), 0, {1e6, -1e6, 50})}).buildings[0]) == reference);
+  CHECK(signature(build({transformed(house("a"), 90, {0, 0, 0})}).buildings[0]) == reference);
+  Source permuted = house("a");
+  std::mt19937 random(3);
+  std::shuffle(permuted.mesh.faces.begin(), permuted.mesh.faces.end(), random);
+  CHECK(signature(build({permuted}).buildings[0]) == reference);
+}
+
+TEST_CASE("turned by any angle, a building keeps its segments") {
+  const Building reference = build({house("a")}).buildings[0];
+  for (const double yaw : {17.0, 45.0, 201.5}) {
+    const Building turned = build({transformed(house("a"), yaw, {10, 20, 0})}).buildings[0];
+    CHECK(turned.segments.segments.size() == reference.segments.segments.size());
+    CHECK(turned.layers[2].validity.volume ==
+          Approx(reference.layers[2].validity.volume).epsilon(0.01));
+  }
+}
+
+TEST_CASE("1 and 2 threads give the same bytes and the same report") {
+  limit_threads(1);
+  const Scene one = build({house("a"), house("b", 14, 8)});
+  limit_threads(2);
+  const Scene two = build({house("a"), house("b", 14, 8)});
+  limit_threads(0);
+  CHECK(all_bytes(one) == all_bytes(two));
+  CHECK(report_without_times(one, small_options()) == report_without_times(two, small_options()));
+}
+
+TEST_CASE("one bad building does not end a scene") {
+  const Scene scene = build(
+      {house("a"), test::as_source({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, "line")});
+  check_chain(scene.buildings[0], 3);
+  CHECK(scene.buildings[1].has_failed());
+  CHECK(!scene.buildings[1].failure.empty());
+  CHECK(scene.buildings[1].source.name == "line");
+}
+
+TEST_CASE("a single triangle and two coplanar ones are answered, not crashed on") {
+  const Source one = test::as_source({{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}}, {{0, 1, 2}}}, "one");
+  const Source two = test::as_source(
+      {{{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0, 0, 3}}, {{0, 1, 2}, {0, 2, 3}}}, "two");
+  for (const Building& b : build({one, two}).buildings) {
+    for (const Layer& l : b.layers)
+      if (l.failure.empty()) CHECK(l.validity.is_watertight);
+    if (b.has_failed()) CHECK(!report_json(Scene{}, Options{}, {}).empty());
+  }
+}
+
+TEST_CASE("any number of layers, one included") {
+  for (const int layers : {1, 2, 5}) {
+    Options options = small_options();
+    options.layers = layers;
+    check_chain(build({house("a")}, options).buildings[0], layers);
+  }
+}
+
+TEST_CASE("an empty scene has a report") {
+  const auto json = nlohmann::json::parse(report_json(build({}), Options{}, {}));
+  CHECK(json["buildings"].empty());
+  CHECK(json["coanalysis"]["segments"] == 0);
+}
