@@ -22,27 +22,33 @@ struct SelectionOptions {
   double beta = 0.3, lambda = 0.4, eta = 4.0;
   int starts = 8;  ///< of the block ascent
   std::uint64_t seed = 1;
-  int exact_segments = 40;  ///< up to this many segments in all the whole program goes to lp_solve
+  int exact_segments = 40;  ///< up to this many segments that layer 0 could do without, in all, the
+                            ///< whole program goes to lp_solve
+  double completion_share = 0.02;  ///< robust: segments that enclose at least this share of their
+                                   ///< building's voxels join layer 0 after the optimum; > 1: none
+  double gap_warning = 0.05;       ///< a greater gap is warned of
 };
 
 enum class SelectionStatus {
   kOptimal,
   kGap,
   kEmpty
-};  ///< proven optimal; best found with a bound; no segments at all
+};  ///< proven optimal (to 1e-7); best found with a bound; no segments at all
 const char* to_string(SelectionStatus status);
 
 struct Selection {
-  std::vector<std::vector<char>> is_layer0;  ///< [building][segment]
-  double objective = 0;                      ///< E_0 of the result of the optimisation
-  double bound = 0;                          ///< proven upper bound on E_0
-  double gap = 0;                            ///< (bound − objective) / max(1, |objective|)
+  std::vector<std::vector<char>> is_layer0;  ///< [building][segment], with those added
+  int added = 0;  ///< segments that joined after the optimum (SelectionOptions::completion_share)
+  double objective = 0;  ///< E_0 of the result of the optimisation
+  double bound = 0;      ///< proven upper bound on E_0
+  double gap = 0;        ///< (bound − objective) / max(1, |objective|)
   SelectionStatus status = SelectionStatus::kEmpty;
   double seconds = 0;
   std::vector<std::string> warnings;
 };
 
-/// Every building keeps at least one segment (if it has any). Deterministic.
+/// Every building keeps at least one segment (if it has any). Deterministic; uses threads. Memory 8
+/// bytes × (segments that layer 0 could do without)². Not for concurrent calls (lp_solve).
 Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                         const SelectionOptions& options = {});
 

@@ -1,0 +1,161 @@
+// Based on: Co-LOD section 3.2, eq. 2–5.
+//
+// Differs: both rules: f_r > bound is loss ≤ (1 − bound)(1 − 1e-9), so that a share exactly at the
+// bound is refused whatever its rounding. Buildings without a segment do not count as "other
+// buildings". Shares are divided by their sum. A building of which no voxel is enclosed has f_r = 1
+// as long as it keeps any segment. Similarities are rounded to float once, here: bound and
+// objective mean the same numbers.
+//
+// Notation: selection_model.h.
+#include "selection_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "parallel.h"
+
+namespace colod::selection {
+namespace {
+
+constexpr double kPaperBound = 0.8, kRobustBound = 0.95;  // on f_r
+constexpr double kStrict = 1e-9;
+
+double sane(double x) { return std::isfinite(x) && x > 0 ? x : 0; }
+
+// Enclosed voxels by the exact set of segments that enclose them; shares sum to 1, never empty.
+std::map<std::vector<int>, double> merged_coverage(const SelectionBuilding& building) {
+  std::map<std::vector<int>, double> terms;
+  double sum = 0;
+  for (const Coverage& c : building.coverage) {
+    std::vector<int> set = c.segments;
+    std::sort(set.begin(), set.end());
+    set.erase(std::unique(set.begin(), set.end()), set.end());
+    assert(set.empty() ||
+           (set.front() >= 0 && set.back() < static_cast<int>(building.segments.size())));
+    if (set.empty() || sane(c.share) == 0) continue;
+    terms[set] += c.share, sum += c.share;
+  }
+  if (sum == 0) {
+    std::vector<int> all(building.segments.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    return {{all, 1.0}};
+  }
+  for (auto& [set, share] : terms) share /= sum;
+  return terms;
+}
+
+// What dropping the segment alone loses.
+std::vector<double> lone_losses(const SelectionBuilding& building,
+                                const std::map<std::vector<int>, double>& terms) {
+  std::vector<double> loss(building.segments.size(), 0.0);
+  for (const auto& [set, share] : terms)
+    if (set.size() == 1) loss[set.front()] += share;
+  return loss;
+}
+
+void add_building(const SelectionBuilding& building, int number, const SelectionOptions& options,
+                  double similarity_weight, Model& model) {
+  const int n = static_cast<int>(building.segments.size());
+  const double bound = options.is_paper ? kPaperBound : kRobustBound;
+  Block block;
+  block.first = model.size();
+  block.capacity = (1 - bound) * (1 - kStrict);
+
+  double area = 0;
+  for (const Descriptor& d : building.segments) area += sane(d.area);
+  block.constant = 1 - (area > 0 ? options.beta : 0);
+
+  const auto terms = merged_coverage(building);
+  const std::vector<double> lone = lone_losses(building, terms);
+  std::vector<int> item_of(n, -1);
+  for (int s = 0; s < n; ++s) {
+    if (lone[s] > block.capacity) continue;
+    const double share = area > 0 ? sane(building.segments[s].area) / area : 0;
+    item_of[s] = model.size();
+    model.items.push_back({static_cast<int>(model.blocks.size()), number, s, options.beta * share,
+                           similarity_weight * (options.is_paper ? 1 : share)});
+  }
+  for (const auto& [set, share] : terms) {
+    Term term{{}, share};
+    for (const int s : set) term.items.push_back(item_of[s]);
+    if (term.items.front() >= 0 &&
+        std::find(term.items.begin(), term.items.end(), -1) == term.items.end())
+      block.terms.push_back(std::move(term));  // with a segment that stays, nothing is ever lost
+  }
+  block.count = model.size() - block.first;
+  model.blocks.push_back(std::move(block));
+}
+
+void fill_similarities(const std::vector<SelectionBuilding>& buildings, double eta, Model& model) {
+  const std::size_t n = model.items.size();
+  model.sim.assign(n * n, 0.0f);
+  const auto descriptor = [&](std::size_t k) -> const Descriptor& {
+    return buildings[model.items[k].building].segments[model.items[k].segment];
+  };
+  parallel_for(
+      n,
+      [&](std::size_t a) {
+        for (std::size_t b = 0; b < n; ++b) {
+          if (model.items[a].block == model.items[b].block) continue;
+          // The smaller index first: both halves get the same bits.
+          const double s =
+              segment_similarity(descriptor(std::min(a, b)), descriptor(std::max(a, b)), eta);
+          model.sim[a * n + b] = std::isfinite(s) ? static_cast<float>(s) : 0.0f;
+        }
+      },
+      8);
+}
+
+}  // namespace
+
+Model build_model(const std::vector<SelectionBuilding>& buildings,
+                  const SelectionOptions& options) {
+  Model model;
+  int counted = 0;
+  for (const SelectionBuilding& b : buildings) counted += !b.segments.empty();
+  const double others = std::max(1, counted - 1);
+  const double weight = options.is_paper ? options.lambda : options.lambda / others;
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    if (!buildings[i].segments.empty())
+      add_building(buildings[i], static_cast<int>(i), options, weight, model);
+  fill_similarities(buildings, options.eta, model);
+  return model;
+}
+
+double block_loss(const Block& block, const Choice& x) {
+  double loss = 0;
+  for (const Term& t : block.terms)
+    if (std::all_of(t.items.begin(), t.items.end(), [&](int k) { return x[k]; })) loss += t.share;
+  return loss;
+}
+
+bool is_feasible(const Model& model, const Choice& x) {
+  return std::all_of(model.blocks.begin(), model.blocks.end(),
+                     [&](const Block& b) { return block_loss(b, x) <= b.capacity; });
+}
+
+double objective(const Model& model, const Choice& x) {
+  double e = 0;
+  for (const Block& b : model.blocks) {
+    const double loss = block_loss(b, x);
+    if (loss > b.capacity) return -std::numeric_limits<double>::infinity();
+    e += b.constant - loss;
+  }
+  for (int k = 0; k < model.size(); ++k) {
+    if (!x[k]) continue;
+    double similarity = 0;
+    for (const Block& b : model.blocks) {
+      float best = 0;
+      for (int t = b.first; t < b.first + b.count; ++t)
+        if (x[t]) best = std::max(best, model.row(k)[t]);
+      similarity += best;
+    }
+    e += model.items[k].gain + model.items[k].weight * similarity;
+  }
+  return e;
+}
+
+}  // namespace colod::selection
