@@ -10,6 +10,10 @@ namespace colod::cli {
 using Run = std::function<int()>;
 
 Run add_build(CLI::App& app);
+Run add_segment(CLI::App& app);
+Run add_analyze(CLI::App& app);
+Run add_mesh(CLI::App& app);
+Run add_export(CLI::App& app);
 Run add_eval(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_synth(CLI::App& app);

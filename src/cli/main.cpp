@@ -20,6 +20,11 @@ int run(int argc, char** argv) {
     commands.emplace_back(command, make(*command));
   };
   add("build", "buildings in, LOD chains and a 3D Tiles tileset out", colod::cli::add_build);
+  add("segment", "stage 1 of build: sources to a scene file", colod::cli::add_segment);
+  add("analyze", "stage 2: the layers of all segments of one or several scene files",
+      colod::cli::add_analyze);
+  add("mesh", "stage 3: one mesh a building and layer", colod::cli::add_mesh);
+  add("export", "stage 4: a meshed scene file to GLB, 3D Tiles, OBJ, PLY", colod::cli::add_export);
   add("eval", "metrics of one mesh against another, JSON on stdout", colod::cli::add_eval);
   add("info", "what a mesh, GLB or tileset holds, JSON on stdout", colod::cli::add_info);
   add("synth", "a procedural neighbourhood with ground truth", colod::cli::add_synth);

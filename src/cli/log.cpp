@@ -1,0 +1,44 @@
+#include "log.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace colod::cli {
+namespace {
+
+const char* name(Level level) {
+  return level == Level::kError ? "error" : level == Level::kWarning ? "warning" : "info";
+}
+
+void write_line(const nlohmann::ordered_json& line) {
+  const std::string text = line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+}  // namespace
+
+Log::Log(bool is_quiet, bool is_json)
+    : is_quiet_(is_quiet), is_json_(is_json), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void Log::progress(const std::string& building, const char* stage, int done, int total) const {
+  if (is_json_)
+    write_line({{"event", "progress"},
+                {"building", building},
+                {"stage", stage},
+                {"done", done},
+                {"total", total}});
+  else if (is_terminal_ && !is_quiet_)
+    std::fprintf(stderr, "\r\033[K%s %d/%d: %s", stage, done, total, building.c_str());
+}
+
+void Log::message(Level level, const std::string& text) const {
+  if (is_json_) return write_line({{"event", name(level)}, {"message", text}});
+  if (is_quiet_ && level != Level::kError) return;
+  if (is_terminal_ && !is_quiet_) std::fprintf(stderr, "\r\033[K");
+  const std::string prefix = level == Level::kInfo ? "" : std::string(name(level)) + ": ";
+  std::fprintf(stderr, "colod: %s%s\n", prefix.c_str(), text.c_str());
+}
+
+}  // namespace colod::cli

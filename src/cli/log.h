@@ -1,0 +1,23 @@
+// Messages on stderr: lines, JSON lines, or a line that is drawn over while stderr is a terminal.
+#pragma once
+
+#include <string>
+
+namespace colod::cli {
+
+enum class Level { kInfo, kWarning, kError };
+
+class Log {
+ public:
+  Log(bool is_quiet, bool is_json);
+
+  /// Not for quiet runs, and on a terminal (or as JSON) only.
+  void progress(const std::string& building, const char* stage, int done, int total) const;
+  /// Quiet runs print errors only.
+  void message(Level level, const std::string& text) const;
+
+ private:
+  bool is_quiet_, is_json_, is_terminal_;
+};
+
+}  // namespace colod::cli

@@ -1,0 +1,95 @@
+#include "output.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <set>
+#include <sstream>
+
+#include "../../exporters/files.h"
+#include "../../exporters/glb.h"
+#include "../../exporters/obj.h"
+#include "../../exporters/tiles3d.h"
+#include "../error.h"
+#include "../parallel.h"
+#include "../report.h"
+
+namespace colod::cli {
+namespace {
+
+ExportBuilding export_building(const Building& b) {
+  ExportBuilding result{
+      .name = b.source.name, .source = b.source.path, .origin = b.frame.origin, .layers = {}};
+  for (const Layer& layer : b.layers)
+    if (layer.failure.empty())
+      result.layers.push_back({layer.layer, layer.mesh, layer.geometric_error});
+  return result;
+}
+
+}  // namespace
+
+void add_output_options(CLI::App& app, OutputArguments& a) {
+  app.add_option("-o,--out", a.out, "folder to write to")->required();
+  app.add_option("--format", a.formats,
+                 "glb, 3dtiles, obj, ply; several with commas (default glb,3dtiles)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"glb", "3dtiles", "obj", "ply"}));
+}
+
+void export_scene(const Scene& scene, const OutputArguments& a) {
+  const std::set<std::string> formats(a.formats.begin(), a.formats.end());
+  std::vector<ExportBuilding> buildings;
+  for (const Building& b : scene.buildings) {
+    ExportBuilding e = export_building(b);
+    if (!e.layers.empty()) buildings.push_back(std::move(e));
+  }
+  parallel_for(buildings.size(), [&](std::size_t i) {
+    if (formats.count("glb")) write_file(a.out, encode_building_glb(buildings[i]));
+    for (const ExportLayer& layer : buildings[i].layers) {
+      if (formats.count("obj")) write_file(a.out, encode_obj(buildings[i], layer));
+      if (formats.count("ply")) write_file(a.out, encode_ply(buildings[i], layer));
+    }
+  });
+  if (formats.count("3dtiles") && !buildings.empty()) {
+    // tileset.json last: whoever finds it finds the tiles it names.
+    const std::vector<Encoded> files = encode_tileset(buildings);
+    for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
+  }
+}
+
+void report_problems(const Scene& scene, const Log& log) {
+  for (const ReadFailure& f : scene.failures) log.message(Level::kError, f.path + ": " + f.message);
+  for (const Building& b : scene.buildings) {
+    if (!b.failure.empty()) log.message(Level::kError, b.failure);
+    for (const Layer& layer : b.layers)
+      if (!layer.failure.empty())
+        log.message(Level::kError, b.source.name + ", layer " + std::to_string(layer.layer) + ": " +
+                                       layer.failure);
+    for (const std::string& w : b.warnings) log.message(Level::kWarning, b.source.name + ": " + w);
+  }
+}
+
+int exit_code(const Scene& scene) {
+  std::size_t failed = scene.failures.size();
+  for (const Building& b : scene.buildings) failed += b.has_failed();
+  if (failed == 0) return 0;
+  const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),
+                                       [](const Building& b) { return b.failure.empty(); });
+  if (is_any_done) return 1;
+  return static_cast<int>(scene.buildings.empty() ? Stage::kInput : Stage::kProcess);
+}
+
+int finish(const Scene& scene, const Options& options, double seconds, const OutputArguments& a,
+           const Log& log) {
+  write_file(a.out, {"report.json", report_json(scene, options, {seconds, peak_memory_bytes()})});
+  report_problems(scene, log);
+  const auto done = std::count_if(scene.buildings.begin(), scene.buildings.end(),
+                                  [](const Building& b) { return b.failure.empty(); });
+  std::ostringstream summary;
+  summary << done << " of " << scene.buildings.size() + scene.failures.size() << " buildings in "
+          << std::fixed << std::setprecision(1) << seconds << " s, written to " << a.out
+          << " (layer 0 is the coarsest; coordinates are local, not placed on Earth)";
+  log.message(Level::kInfo, summary.str());
+  return exit_code(scene);
+}
+
+}  // namespace colod::cli

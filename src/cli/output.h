@@ -1,0 +1,33 @@
+// What `build` and `export` share: a finished scene to files, messages and an exit code.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../pipeline.h"
+#include "cli.h"
+#include "log.h"
+
+namespace colod::cli {
+
+struct OutputArguments {
+  std::string out;
+  std::vector<std::string> formats = {"glb", "3dtiles"};
+};
+
+void add_output_options(CLI::App& app, OutputArguments& a);
+
+/// Everything but report.json. Throws Error{kOutput}.
+void export_scene(const Scene& scene, const OutputArguments& a);
+
+/// Failures as errors, the rest as warnings, one line each.
+void report_problems(const Scene& scene, const Log& log);
+
+/// 0, 1, or 3 and 4 when nothing could be read or made.
+int exit_code(const Scene& scene);
+
+/// Writes report.json, says what failed and what was done; returns the exit code.
+int finish(const Scene& scene, const Options& options, double seconds, const OutputArguments& a,
+           const Log& log);
+
+}  // namespace colod::cli

@@ -1,0 +1,52 @@
+// The options of the pipeline and of running it, shared by `build` and the stages.
+#pragma once
+
+#include <cmath>
+#include <sstream>
+
+#include "../error.h"
+#include "../options.h"
+#include "cli.h"
+#include "log.h"
+
+namespace colod::cli {
+
+struct RunArguments {
+  int threads = 0;
+  bool is_quiet = false, is_json_log = false;
+
+  Log log() const { return {is_quiet, is_json_log}; }
+};
+
+inline void add_run_options(CLI::App& app, RunArguments& a) {
+  app.add_option("--threads", a.threads, "threads to use, 0 = all cores")
+      ->check(CLI::Range(0, 4096));
+  app.add_flag("--quiet", a.is_quiet, "errors only");
+  app.add_flag("--log-json", a.is_json_log, "progress and messages as JSON lines on stderr");
+}
+
+/// --rules, every row of the option table, and --config.
+inline void add_pipeline_options(CLI::App& app, Options& options) {
+  app.add_option_function<std::string>(
+         "--rules",
+         [&options](const std::string& v) {
+           options.rules = v == "paper" ? Rules::kPaper : Rules::kRobust;
+         },
+         "robust (default) or the paper's letter")
+      ->check(CLI::IsMember({"robust", "paper"}));
+  for (const OptionInfo& info : option_table()) {
+    const auto set = [&options, &info](const double& value) {
+      if (info.is_integer &&
+          (!(value >= info.min && value <= info.max) || value != std::floor(value)))
+        throw Error(Stage::kUsage, "--" + info.name, "must be a whole number in its range");
+      info.set(options, value);
+    };
+    std::ostringstream help;
+    help << info.help << (info.unit.empty() ? "" : " [" + info.unit + "]") << ", default "
+         << info.get(Options{});
+    app.add_option_function<double>("--" + info.name, set, help.str());
+  }
+  app.set_config("--config", "", "TOML or INI file with any of these options");
+}
+
+}  // namespace colod::cli

@@ -1,0 +1,169 @@
+// The same job as `build` in stages, through scene files: segment, analyze, mesh, export.
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+
+#include "../error.h"
+#include "../parallel.h"
+#include "../pipeline.h"
+#include "../store.h"
+#include "cli.h"
+#include "input_options.h"
+#include "output.h"
+#include "pipeline_options.h"
+
+namespace colod::cli {
+namespace {
+
+struct StageArguments {
+  std::vector<std::string> inputs;  ///< sources (segment) or scene files
+  std::string scene;                ///< the scene file that segment writes
+  ReadOptions read;
+  Options options;
+  OutputArguments output;
+  RunArguments run;
+};
+
+int segment(const StageArguments& a) {
+  validate(a.options);
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  ReadResult input = read_sources(a.inputs, a.read);
+  Scene problems;
+  problems.failures = input.failures;
+  problems.buildings.resize(input.sources.size());
+  Store store(a.scene, true);
+  store.put_options(a.options);
+  std::mutex mutex;
+  int done = 0;
+  parallel_for(input.sources.size(), [&](std::size_t i) {
+    const std::string name = input.sources[i].name, key = segments_key(input.sources[i], a.options);
+    bool is_there;
+    {
+      const std::lock_guard lock(mutex);
+      is_there = store.segments_key(name) == key;
+    }
+    Building b;
+    if (!is_there) b = segment_building(std::move(input.sources[i]), a.options);
+    const std::lock_guard lock(mutex);
+    if (!is_there) store.put_segments(b, static_cast<int>(i), key);
+    log.progress(name, is_there ? "already there" : "segments", ++done,
+                 static_cast<int>(input.sources.size()));
+    problems.buildings[i].source.name = name;
+    problems.buildings[i].failure = b.failure;
+    problems.buildings[i].warnings = b.warnings;
+  });
+  report_problems(problems, log);
+  return exit_code(problems);
+}
+
+/// All buildings of several scene files; `file_of[i]` tells where building i came from.
+Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of) {
+  Scene scene;
+  for (std::size_t f = 0; f < stores.size(); ++f)
+    for (const std::string& name : stores[f].names()) {
+      scene.buildings.push_back(stores[f].building(name));
+      file_of.push_back(f);
+    }
+  return scene;
+}
+
+std::vector<Store> open_all(const std::vector<std::string>& files) {
+  std::vector<Store> stores;
+  for (const std::string& file : files) stores.emplace_back(file, false);
+  return stores;
+}
+
+int analyze(const StageArguments& a) {
+  limit_threads(a.run.threads);
+  std::vector<Store> stores = open_all(a.inputs);
+  std::vector<std::size_t> file_of;
+  Scene scene = read_scene(stores, file_of);
+  analyze_scene(scene, stores.front().options());
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i)
+    stores[file_of[i]].put_layers_of_segments(scene.buildings[i]);
+  for (Store& store : stores) store.put_coanalysis(scene);
+  return 0;
+}
+
+int mesh(const StageArguments& a) {
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  Scene problems;
+  for (Store& store : open_all(a.inputs)) {
+    const Options options = store.options();
+    store.get_coanalysis(problems);
+    const std::vector<std::string> names = store.names();
+    std::mutex mutex;
+    int done = 0;
+    parallel_for(names.size(), [&](std::size_t i) {
+      Building b;
+      {
+        const std::lock_guard lock(mutex);
+        if (store.has_meshes(names[i])) return;
+        b = store.building(names[i]);
+      }
+      mesh_building(b, options);
+      const std::lock_guard lock(mutex);
+      store.put_meshes(b);
+      log.progress(names[i], "layers", ++done, static_cast<int>(names.size()));
+    });
+    for (const std::string& name : names) problems.buildings.push_back(store.building(name));
+  }
+  report_problems(problems, log);
+  return exit_code(problems);
+}
+
+int export_files(const StageArguments& a) {
+  const auto start = std::chrono::steady_clock::now();
+  limit_threads(a.run.threads);
+  std::vector<Store> stores = open_all(a.inputs);
+  std::vector<std::size_t> file_of;
+  Scene scene = read_scene(stores, file_of);
+  stores.front().get_coanalysis(scene);
+  for (const Building& b : scene.buildings)
+    if (b.failure.empty() && b.layers.empty())
+      throw Error(Stage::kInput, b.source.name, "has no meshes yet: run colod mesh first");
+  export_scene(scene, a.output);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return finish(scene, stores.front().options(), seconds.count(), a.output, a.run.log());
+}
+
+std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
+  auto a = std::make_shared<StageArguments>();
+  app.add_option("SCENE", a->inputs, "scene files (.colod)")->required();
+  add_run_options(app, a->run);
+  return a;
+}
+
+}  // namespace
+
+Run add_segment(CLI::App& app) {
+  auto a = std::make_shared<StageArguments>();
+  app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
+  app.add_option("-o,--out", a->scene, "scene file to write or go on with")->required();
+  add_input_options(app, a->read);
+  add_pipeline_options(app, a->options);
+  add_run_options(app, a->run);
+  return [a] { return segment(*a); };
+}
+
+Run add_analyze(CLI::App& app) {
+  auto a = add_scene_files(app);
+  return [a] { return analyze(*a); };
+}
+
+Run add_mesh(CLI::App& app) {
+  auto a = add_scene_files(app);
+  return [a] { return mesh(*a); };
+}
+
+Run add_export(CLI::App& app) {
+  auto a = add_scene_files(app);
+  add_output_options(app, a->output);
+  return [a] { return export_files(*a); };
+}
+
+}  // namespace colod::cli

@@ -1,0 +1,63 @@
+// The scene file: one SQLite database with inputs, planes, segments, layers and meshes
+// (docs/scene-file.md).
+//
+// Stages write one building per transaction, so a killed run leaves whole buildings only and goes
+// on with the missing ones.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "options.h"
+#include "pipeline.h"
+
+namespace colod {
+
+/// Not thread-safe. Every function throws Error{kInput} (reading) or Error{kOutput} (writing)
+/// naming the file.
+class Store {
+ public:
+  /// Opens a scene file; `is_new_allowed` makes it when there is none.
+  Store(const std::string& path, bool is_new_allowed);
+  ~Store();
+  Store(Store&&) noexcept;
+
+  void put_options(const Options& options);
+  Options options() const;
+
+  /// Names of all buildings, in the order of the input.
+  std::vector<std::string> names() const;
+
+  /// Rooms 1 to 5: replaces the building of this name and all that hung on it. `order` sorts
+  /// names(); `key` says what it was made from.
+  void put_segments(const Building& building, int order, const std::string& key);
+  /// The key that the building was put with; empty: not there.
+  std::string segments_key(const std::string& name) const;
+
+  /// Rooms 6 and 7: layer_of_segment of a building; its meshes, which they outdate, go away when a
+  /// layer changed.
+  void put_layers_of_segments(const Building& building);
+  bool has_layers_of_segments(const std::string& name) const;
+
+  /// Rooms 8 and 9: the meshes with their measures.
+  void put_meshes(const Building& building);
+  bool has_meshes(const std::string& name) const;
+
+  /// All that is there of a building; timings are not kept.
+  Building building(const std::string& name) const;
+
+  /// What the co-analysis reported, for the report.
+  void put_coanalysis(const Scene& scene);
+  void get_coanalysis(Scene& scene) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A key for Store::put_segments: a hash of the source's content and of the options that rooms 2 to
+/// 5 depend on.
+std::string segments_key(const Source& source, const Options& options);
+
+}  // namespace colod

@@ -1,0 +1,117 @@
+#include "../src/store.h"
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "../src/error.h"
+#include "../src/report.h"
+#include "meshes.h"
+
+using namespace colod;
+
+namespace {
+
+/// A path that is free and is removed with the test.
+struct TemporaryFile {
+  std::string path;
+  TemporaryFile() {
+    char name[] = "/tmp/colod-store-XXXXXX";
+    const int handle = mkstemp(name);
+    REQUIRE(handle >= 0);
+    path = name;
+    std::remove(path.c_str());
+  }
+  ~TemporaryFile() {
+    std::remove(path.c_str());
+    std::remove((path + "-journal").c_str());
+  }
+};
+
+Options small_options() {
+  Options o;
+  o.ns = 24;
+  o.nr = 40;
+  o.lambda = 0.123;
+  return o;
+}
+
+Source house(const std::string& name, double w) {
+  return test::as_source(
+      test::join(test::gable_house(w, 9, 6, 4), test::box_mesh({2, 3, 7}, {3, 4.2, 11})), name);
+}
+
+}  // namespace
+
+TEST_CASE("stages through a scene file give the report of a build in one go") {
+  TemporaryFile file;
+  const Options options = small_options();
+  Scene direct = build_scene({{house("a", 12), house("b", 10)}, {}}, options);
+  {
+    Store store(file.path, true);
+    store.put_options(options);
+    int order = 0;
+    for (const auto& [name, w] : {std::pair("a", 12.0), std::pair("b", 10.0)})
+      store.put_segments(segment_building(house(name, w), options), order++,
+                         segments_key(house(name, w), options));
+  }
+  Store store(file.path, false);
+  CHECK(store.options().lambda == options.lambda);
+  REQUIRE(store.names() == std::vector<std::string>{"a", "b"});
+  Scene staged;
+  for (const std::string& name : store.names()) staged.buildings.push_back(store.building(name));
+  analyze_scene(staged, store.options());
+  store.put_coanalysis(staged);
+  for (Building& b : staged.buildings) {
+    CHECK(!store.has_layers_of_segments(b.source.name));
+    store.put_layers_of_segments(b);
+    Building again = store.building(b.source.name);
+    mesh_building(again, store.options());
+    store.put_meshes(again);
+    CHECK(store.has_meshes(b.source.name));
+    b = store.building(b.source.name);
+  }
+  for (Scene* s : {&direct, &staged}) {
+    s->coanalysis_seconds = 0;
+    for (Building& b : s->buildings) b.timings = {}, b.segments.visibility_seconds = 0;
+  }
+  CHECK(report_json(staged, options, {}) == report_json(direct, options, {}));
+}
+
+TEST_CASE("the key follows content and the options that segments depend on, and no other") {
+  const Options options = small_options();
+  const std::string key = segments_key(house("a", 12), options);
+  CHECK(key == segments_key(house("another name", 12), options));
+  CHECK(key != segments_key(house("a", 12.001), options));
+  Options other = options;
+  other.ns = 25;
+  CHECK(key != segments_key(house("a", 12), other));
+  other = options;
+  other.beta = 0.7;
+  CHECK(key == segments_key(house("a", 12), other));
+}
+
+TEST_CASE("changed layers throw the meshes away, unchanged ones keep them") {
+  TemporaryFile file;
+  Scene scene = build_scene({{house("a", 12)}, {}}, small_options());
+  Building& b = scene.buildings[0];
+  Store store(file.path, true);
+  store.put_segments(b, 0, "key");
+  store.put_layers_of_segments(b);
+  store.put_meshes(b);
+  store.put_layers_of_segments(b);
+  CHECK(store.has_meshes("a"));
+  b.layer_of_segment.back() = 1 - std::min(b.layer_of_segment.back(), 1);
+  store.put_layers_of_segments(b);
+  CHECK(!store.has_meshes("a"));
+}
+
+TEST_CASE("what is no scene file is refused by name") {
+  TemporaryFile file;
+  CHECK_THROWS_WITH(Store(file.path, false), Catch::Contains(file.path));
+  std::ofstream(file.path)
+      << "this is text, and long enough to be read as a header of something else entirely";
+  CHECK_THROWS_AS(Store(file.path, false), Error);
+  CHECK_THROWS_AS(Store("/proc/no/such/place", true), Error);
+}
