@@ -1,6 +1,7 @@
 // KHR_draco_mesh_compression's payload; the only door to the Draco encoder.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,7 +24,19 @@ struct QuantizationGrid {
   Vec3 origin = Vec3::Zero();
   double range = 1;  ///< metres, of the longest side
   int bits = 14;     ///< 1..30
+
+  double step() const { return range / ((std::int64_t{1} << bits) - 1); }
+  /// Largest distance that rounding moves a position.
+  double error() const { return 0.5 * std::sqrt(3.0) * step(); }
+  Vec3 round(const Vec3& p) const {
+    return origin + ((p - origin) / step()).array().round().matrix() * step();
+  }
 };
+
+/// The coarsest grid over `box` that moves no position farther than `bound` metres. Its step is a
+/// power of two and its origin a multiple of it, so that grids nest and decoded floats are exact;
+/// 8 to 24 bits (a float holds no more), hence a wider step for boxes beyond 2^24 steps.
+QuantizationGrid fit_grid(const Box& box, double bound);
 
 struct DracoResult {
   std::string bytes;
@@ -32,7 +45,8 @@ struct DracoResult {
   int position_id = 0, normal_id = 0, feature_id = -1;  ///< Draco unique ids
 };
 
-/// Throws Error{kOutput} when the encoder refuses.
+/// Triangles with two corners on one point must have been left out. Throws Error{kOutput} when the
+/// encoder refuses or loses a face.
 DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid);
 
 }  // namespace colod

@@ -1,0 +1,151 @@
+// Based on: KHR_draco_mesh_compression (ratified), Google Draco's expert encoder.
+// Differs: the grid is given from outside, in metres, instead of a number of bits per mesh, and
+// counts, bounds and ids come from decoding the result, since the encoder may merge and reorder.
+#include "draco.h"
+
+#include <draco/compression/decode.h>
+#include <draco/compression/expert_encode.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "../src/error.h"
+
+namespace colod {
+
+namespace {
+
+constexpr int kNormalBits = 10;       // octahedral: at most about 0.1 degrees off
+constexpr int kMaxIntegerId = 65535;  // beyond it glTF wants floats, exact to 2^24
+
+[[noreturn]] void refuse(const std::string& cause) { throw Error(Stage::kOutput, "draco", cause); }
+
+void check(const draco::Status& status) {
+  if (!status.ok()) refuse(status.error_msg_string());
+}
+
+template <typename T, int kComponents>
+int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type kind, draco::DataType type,
+                  const std::vector<std::array<T, kComponents>>& values) {
+  draco::GeometryAttribute attribute;
+  attribute.Init(kind, nullptr, kComponents, type, false, sizeof(values[0]), 0);
+  const auto n = static_cast<std::uint32_t>(values.size());
+  const int id = mesh.AddAttribute(attribute, true, n);
+  for (std::uint32_t i = 0; i < n; ++i)
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values[i].data());
+  return id;
+}
+
+std::vector<std::array<float, 3>> as_floats(const std::vector<Vec3>& values) {
+  std::vector<std::array<float, 3>> out;
+  for (const Vec3& v : values)
+    out.push_back(
+        {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
+  return out;
+}
+
+template <typename T>
+std::vector<std::array<T, 1>> as_scalars(const std::vector<std::uint32_t>& ids) {
+  std::vector<std::array<T, 1>> out;
+  for (const std::uint32_t id : ids) out.push_back({static_cast<T>(id)});
+  return out;
+}
+
+struct Attributes {
+  int position = 0, normal = 0, feature = -1;
+};
+
+std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGrid& grid,
+                                      Attributes& ids) {
+  auto out = std::make_unique<draco::Mesh>();
+  out->set_num_points(static_cast<std::uint32_t>(mesh.positions.size()));
+  out->SetNumFaces(mesh.triangles.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    draco::Mesh::Face face;
+    for (int c = 0; c < 3; ++c) face[c] = static_cast<std::uint32_t>(mesh.triangles[f][c]);
+    out->SetFace(draco::FaceIndex(static_cast<std::uint32_t>(f)), face);
+  }
+  std::vector<Vec3> rounded;
+  for (const Vec3& p : mesh.positions) rounded.push_back(grid.round(p));
+  using Kind = draco::GeometryAttribute;
+  ids.position =
+      add_attribute<float, 3>(*out, Kind::POSITION, draco::DT_FLOAT32, as_floats(rounded));
+  ids.normal =
+      add_attribute<float, 3>(*out, Kind::NORMAL, draco::DT_FLOAT32, as_floats(mesh.normals));
+  if (!mesh.feature_ids.empty()) {
+    const std::uint32_t most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
+    ids.feature = most <= kMaxIntegerId
+                      ? add_attribute<std::uint16_t, 1>(*out, Kind::GENERIC, draco::DT_UINT16,
+                                                        as_scalars<std::uint16_t>(mesh.feature_ids))
+                      : add_attribute<float, 1>(*out, Kind::GENERIC, draco::DT_FLOAT32,
+                                                as_scalars<float>(mesh.feature_ids));
+  }
+  out->DeduplicateAttributeValues();  // equal positions of neighbouring facets share connectivity
+  out->DeduplicatePointIds();
+  return out;
+}
+
+/// What a client will see.
+void read_back(DracoResult& result, const Attributes& ids) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(result.bytes.data(), result.bytes.size());
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  check(decoded.status());
+  const draco::Mesh& mesh = *decoded.value();
+  result.vertices = mesh.num_points();
+  result.faces = mesh.num_faces();
+  const draco::PointAttribute* position =
+      mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  const draco::PointAttribute* normal = mesh.GetNamedAttribute(draco::GeometryAttribute::NORMAL);
+  const draco::PointAttribute* feature = mesh.GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  if (!position || !normal || (ids.feature >= 0) != (feature != nullptr))
+    refuse("an attribute got lost");
+  result.position_id = static_cast<int>(position->unique_id());
+  result.normal_id = static_cast<int>(normal->unique_id());
+  result.feature_id = feature ? static_cast<int>(feature->unique_id()) : -1;
+  Box box;
+  for (std::uint32_t i = 0; i < result.vertices; ++i) {
+    std::array<float, 3> p;
+    position->GetMappedValue(draco::PointIndex(i), p.data());
+    box.extend(Vec3(p[0], p[1], p[2]));
+  }
+  result.min = box.min, result.max = box.max;
+}
+
+}  // namespace
+
+QuantizationGrid fit_grid(const Box& box, double bound) {
+  const double longest = box.is_empty() ? 0 : box.size().maxCoeff();
+  double step = std::exp2(std::floor(std::log2(2 * bound / std::sqrt(3.0))));
+  const double reach =
+      box.is_empty() ? 0 : std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  while (reach / step + 2 > (1 << 24)) step *= 2;
+  QuantizationGrid grid;
+  if (!box.is_empty()) grid.origin = (box.min / step).array().floor().matrix() * step;
+  const double cells = std::ceil(longest / step) + 1;
+  grid.bits = std::clamp(static_cast<int>(std::ceil(std::log2(cells + 1))), 8, 24);
+  grid.range = step * ((1 << grid.bits) - 1);
+  return grid;
+}
+
+DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid) {
+  if (mesh.triangles.empty()) refuse("a mesh without triangles");
+  Attributes ids;
+  const std::unique_ptr<draco::Mesh> input = as_draco(mesh, grid, ids);
+  draco::ExpertEncoder encoder(*input);
+  encoder.SetSpeedOptions(3, 5);
+  const Eigen::Vector3f origin = grid.origin.cast<float>();
+  encoder.SetAttributeExplicitQuantization(ids.position, grid.bits, 3, origin.data(),
+                                           static_cast<float>(grid.range));
+  encoder.SetAttributeQuantization(ids.normal, kNormalBits);
+  draco::EncoderBuffer buffer;
+  check(encoder.EncodeToBuffer(&buffer));
+  DracoResult result;
+  result.bytes.assign(buffer.data(), buffer.size());
+  read_back(result, ids);
+  if (result.faces != mesh.triangles.size()) refuse("the encoder lost faces");
+  return result;
+}
+
+}  // namespace colod

@@ -1,0 +1,78 @@
+// Based on: Wavefront OBJ, Greg Turk's PLY.
+// Differs: numbers are the shortest that read back as the same double, so that 10^6 metre
+// coordinates lose nothing.
+#include "obj.h"
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+
+namespace colod {
+
+static_assert(std::endian::native == std::endian::little, "put() copies the host's bytes");
+
+namespace {
+
+template <typename T>
+void print(std::string& out, T value) {
+  char text[32];
+  out.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+template <typename T>
+void put(std::string& out, T value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename Ring>
+void print_face(std::string& out, const Ring& ring) {
+  out += 'f';
+  for (const int v : ring) out += ' ', print(out, v + 1);
+  out += '\n';
+}
+
+std::string stem(const ExportBuilding& building, const ExportLayer& layer) {
+  return "buildings/" + building.name + ".layer" + std::to_string(layer.layer);
+}
+
+}  // namespace
+
+Encoded encode_obj(const ExportBuilding& building, const ExportLayer& layer) {
+  std::string out = "# colod: layer " + std::to_string(layer.layer) +
+                    " (0 = coarsest), metres, z up, world coordinates\n";
+  out += "o " + building.name + ".layer" + std::to_string(layer.layer) + "\n";
+  for (const Vec3& p : layer.mesh.vertices) {
+    const Vec3 world = p + building.origin;
+    out += 'v';
+    for (int k = 0; k < 3; ++k) out += ' ', print(out, world[k]);
+    out += '\n';
+  }
+  const auto is_polygon = [&](const PolygonMesh::Facet& f) {
+    return f.rings.size() == 1 && f.rings[0].size() >= 3;
+  };
+  for (const PolygonMesh::Facet& f : layer.mesh.facets)
+    if (is_polygon(f)) print_face(out, f.rings[0]);
+  for (std::size_t t = 0; t < layer.mesh.triangles.size(); ++t)
+    if (!is_polygon(layer.mesh.facets[layer.mesh.facet_of_triangle[t]]))
+      print_face(out, layer.mesh.triangles[t]);
+  return {stem(building, layer) + ".obj", out};
+}
+
+Encoded encode_ply(const ExportBuilding& building, const ExportLayer& layer) {
+  std::string out = "ply\nformat binary_little_endian 1.0\ncomment colod: layer " +
+                    std::to_string(layer.layer) +
+                    " (0 = coarsest), metres, z up, world coordinates\nelement vertex " +
+                    std::to_string(layer.mesh.vertices.size()) +
+                    "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                    std::to_string(layer.mesh.triangles.size()) +
+                    "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3& p : layer.mesh.vertices)
+    for (int k = 0; k < 3; ++k) put(out, p[k] + building.origin[k]);
+  for (const Face& f : layer.mesh.triangles) {
+    put(out, std::uint8_t{3});
+    for (const int v : f) put(out, static_cast<std::int32_t>(v));
+  }
+  return {stem(building, layer) + ".ply", out};
+}
+
+}  // namespace colod
