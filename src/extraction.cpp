@@ -1,0 +1,103 @@
+// Based on: Co-LOD, section 3.3 (eq. 11): binary space partition, rays, the largest interior
+// component.
+// Differs: paper rules take the largest component of the cells that more than half of nr rays see
+// from inside. Robust rules add candidate planes, a min-cut and several trials before giving up
+// (extraction_candidates.cpp, extraction_labels.cpp). Both mend the boundary to a 2-manifold
+// (extraction_repair.cpp) and write it in the same way (extraction_surface.cpp).
+// Notation: a cell is a convex piece of space between the layer's planes.
+#include "extraction.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "error.h"
+#include "extraction_candidates.h"
+#include "extraction_labels.h"
+#include "extraction_surface.h"
+
+namespace colod {
+namespace {
+
+constexpr double kShortest = 1e-3;  // metres: shorter edges are contracted
+
+std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& plan) {
+  std::vector<char> is_forced(partition.cells.size(), 0);
+  for (std::size_t c = 0; c < is_forced.size(); ++c)
+    for (const CuttingPlan::Limit& limit : plan.limits)
+      if (limit.normal.dot(partition.cells[c].centroid) > limit.offset) is_forced[c] = 1;
+  return is_forced;
+}
+
+/// The inside by falling strictness; empty when nothing is inside at all.
+std::vector<char> label(const Partition& partition, const CuttingPlan& plan, const Planes& planes,
+                        const RayScene& rays, const ExtractionOptions& options,
+                        std::vector<std::string>& warnings) {
+  const std::vector<char> is_forced = forced_outside(partition, plan);
+  std::vector<char> is_inside;
+  if (options.is_paper) {
+    is_inside = threshold_cells(
+        gather_evidence(partition, rays, {.is_paper = true, .nr = options.nr}), is_forced);
+    return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
+  }
+  for (const double escape : {1.0, 0.5, 0.1}) {
+    Evidence evidence = gather_evidence(partition, rays, {.nr = options.nr, .escape = escape});
+    measure_coverage(partition, planes, plan.input, evidence);
+    is_inside = cut_cells(partition, evidence, is_forced, options.smoothness);
+    if (keep_largest_component(partition, is_inside)) {
+      if (escape < 1.0)
+        warnings.push_back("the layer is so open that few rays decide what is inside");
+      return is_inside;
+    }
+  }
+  warnings.push_back("no ray sees an inside: the layer is the box around its planes");
+  for (std::size_t c = 0; c < is_inside.size(); ++c) is_inside[c] = !is_forced[c];
+  return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
+}
+
+}  // namespace
+
+Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
+                         const RayScene& rays, const ExtractionOptions& options) {
+  Extraction result;
+  if (layer_planes.empty()) throw Error(Stage::kProcess, "extraction", "the layer has no plane");
+  const CuttingPlan plan = plan_cuts(planes, layer_planes, rays, options);
+  const Partition partition =
+      partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
+  result.cells = static_cast<std::int64_t>(partition.cells.size());
+  result.warnings = partition.warnings;
+  std::vector<char> is_inside = label(partition, plan, planes, rays, options, result.warnings);
+  if (is_inside.empty())
+    throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
+  result.mesh = extract_surface(partition, is_inside, options.is_paper);
+  result.is_manifold = is_closed_manifold(result.mesh.triangles);
+  return result;
+}
+
+PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
+                            bool keeps_cavities) {
+  assert(is_inside.size() == partition.cells.size());
+  if (!keeps_cavities) fill_cavities(partition, is_inside);
+  mend_pinches(partition, is_inside);
+  if (!keep_largest_component(partition, is_inside)) return {};
+  if (!keeps_cavities) fill_cavities(partition, is_inside);
+  PolygonMesh mesh = build_surface(partition, BoundaryFinder(partition).find(is_inside));
+  contract_short_edges(mesh, kShortest);
+  return mesh;
+}
+
+Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle) {
+  Mesh soup;
+  if (plane_of_triangle) plane_of_triangle->clear();
+  for (std::size_t p = 0; p < planes.planes.size(); ++p) {
+    const Outline& outline = planes.planes[p].outline;
+    const int first = static_cast<int>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), outline.vertices.begin(), outline.vertices.end());
+    for (const Face& f : outline.triangles) {
+      soup.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+      if (plane_of_triangle) plane_of_triangle->push_back(static_cast<int>(p));
+    }
+  }
+  return soup;
+}
+
+}  // namespace colod

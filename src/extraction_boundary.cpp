@@ -1,0 +1,220 @@
+// Based on: the boundary of a union of convex cells; half-edges as in Mäntylä, "An Introduction to
+// Solid Modeling", 1988.
+// Differs: the paper does not say how neighbouring faces are made to share their edges. Here every
+// edge is split at all vertices of the boundary that lie on its line, found and ordered by integer
+// predicates, so that no T-junction is left and no coordinate is ever compared.
+// Notation: a corner is one position of one polygon's loop; the half-edge of a corner runs from it
+// to the next corner of the loop.
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <tuple>
+
+#include "extraction_surface.h"
+
+namespace colod {
+namespace {
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int a, int b) {
+    a = find(a), b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+struct HalfEdge {
+  int low, high;  ///< the two vertices, rising
+  bool is_forward;
+  int corner;  ///< global number of the corner it starts at
+  int next;    ///< global number of the corner it ends at
+};
+
+std::vector<HalfEdge> sorted_half_edges(const std::vector<std::vector<int>>& loops) {
+  std::vector<HalfEdge> edges;
+  int first = 0;
+  for (const std::vector<int>& loop : loops) {
+    const int n = static_cast<int>(loop.size());
+    for (int i = 0; i < n; ++i) {
+      const int a = loop[i], b = loop[(i + 1) % n];
+      edges.push_back({std::min(a, b), std::max(a, b), a < b, first + i, first + (i + 1) % n});
+    }
+    first += n;
+  }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& x, const HalfEdge& y) {
+    return std::tie(x.low, x.high, x.corner) < std::tie(y.low, y.high, y.corner);
+  });
+  return edges;
+}
+
+/// Groups of loops that meet at an edge with other than one use in each direction, or at a vertex
+/// with more than one fan.
+std::vector<std::vector<int>> pinched_loops(const std::vector<std::vector<int>>& loops) {
+  std::vector<int> loop_of_corner, vertex_of_corner;
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    for (const int v : loops[l]) {
+      loop_of_corner.push_back(static_cast<int>(l));
+      vertex_of_corner.push_back(v);
+    }
+  std::vector<std::vector<int>> pinches;
+  std::vector<int> vertices_done;
+  UnionFind fans(loop_of_corner.size());
+  const std::vector<HalfEdge> edges = sorted_half_edges(loops);
+  for (std::size_t i = 0, j; i < edges.size(); i = j) {
+    for (j = i; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high;)
+      ++j;
+    if (j - i == 2 && edges[i].is_forward != edges[i + 1].is_forward) {
+      fans.unite(edges[i].corner, edges[i + 1].next);
+      fans.unite(edges[i].next, edges[i + 1].corner);
+      continue;
+    }
+    pinches.emplace_back();
+    for (std::size_t k = i; k < j; ++k) pinches.back().push_back(loop_of_corner[edges[k].corner]);
+    vertices_done.insert(vertices_done.end(), {edges[i].low, edges[i].high});
+  }
+  std::sort(vertices_done.begin(), vertices_done.end());
+
+  std::vector<int> corners(loop_of_corner.size());
+  std::iota(corners.begin(), corners.end(), 0);
+  std::stable_sort(corners.begin(), corners.end(),
+                   [&](int a, int b) { return vertex_of_corner[a] < vertex_of_corner[b]; });
+  for (std::size_t i = 0, j; i < corners.size(); i = j) {
+    const int vertex = vertex_of_corner[corners[i]];
+    bool is_pinched = false;
+    for (j = i; j < corners.size() && vertex_of_corner[corners[j]] == vertex; ++j)
+      is_pinched |= fans.find(corners[j]) != fans.find(corners[i]);
+    if (!is_pinched || std::binary_search(vertices_done.begin(), vertices_done.end(), vertex))
+      continue;
+    pinches.emplace_back();
+    for (std::size_t k = i; k < j; ++k) pinches.back().push_back(loop_of_corner[corners[k]]);
+  }
+  return pinches;
+}
+
+}  // namespace
+
+int BoundaryFinder::line_of(int plane_a, int plane_b) {
+  const auto [a, b] = std::minmax(plane_a, plane_b);
+  const std::uint64_t pair = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
+  const auto found = line_of_pair_.find(pair);
+  if (found != line_of_pair_.end()) return found->second;
+  const int fresh = static_cast<int>(planes_of_line_.size());
+  const int line = line_of_id_.try_emplace(line_id(partition_, a, b), fresh).first->second;
+  if (line == fresh) planes_of_line_.push_back({a, b});
+  line_of_pair_[pair] = line;
+  return line;
+}
+
+void BoundaryFinder::add_touching(const Boundary& boundary,
+                                  std::vector<std::pair<int, int>>& vertices_of_line) {
+  std::vector<char> is_on_boundary(partition_.vertices.size(), 0),
+      is_used(partition_.pieces.size());
+  for (const Boundary::Polygon& polygon : boundary.polygons) {
+    is_used[polygon.piece] = 1;
+    for (const int v : partition_.pieces[polygon.piece].polygon) is_on_boundary[v] = 1;
+  }
+  for (std::size_t p = 0; p < partition_.pieces.size(); ++p) {
+    const Partition::Piece& piece = partition_.pieces[p];
+    const std::size_t n = piece.polygon.size();
+    for (std::size_t i = 0; i < n && !is_used[p]; ++i) {
+      if (!is_on_boundary[piece.polygon[i]]) continue;
+      for (const std::size_t edge : {i, (i + n - 1) % n})
+        vertices_of_line.emplace_back(line_of(piece.plane, piece.line_planes[edge]),
+                                      piece.polygon[i]);
+    }
+  }
+}
+
+Boundary BoundaryFinder::find(const std::vector<char>& is_inside) {
+  const auto inside = [&](int cell) { return cell >= 0 && is_inside[cell]; };
+  Boundary boundary;
+  std::vector<std::vector<int>> lines;                // per polygon and edge
+  std::vector<std::pair<int, int>> vertices_of_line;  // (line, vertex)
+  for (std::size_t p = 0; p < partition_.pieces.size(); ++p) {
+    const Partition::Piece& piece = partition_.pieces[p];
+    if (inside(piece.cells[0]) == inside(piece.cells[1])) continue;
+    const bool is_reversed = inside(piece.cells[1]);
+    boundary.polygons.push_back({static_cast<int>(p),
+                                 piece.plane,
+                                 is_reversed,
+                                 piece.cells[is_reversed],
+                                 piece.cells[!is_reversed],
+                                 {}});
+    lines.emplace_back();
+    const std::size_t n = piece.polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      lines.back().push_back(line_of(piece.plane, piece.line_planes[i]));
+      vertices_of_line.emplace_back(lines.back()[i], piece.polygon[i]);
+      vertices_of_line.emplace_back(lines.back()[i], piece.polygon[(i + 1) % n]);
+    }
+  }
+  add_touching(boundary, vertices_of_line);
+  std::sort(vertices_of_line.begin(), vertices_of_line.end());
+  vertices_of_line.erase(std::unique(vertices_of_line.begin(), vertices_of_line.end()),
+                         vertices_of_line.end());
+  std::vector<std::vector<int>> along(planes_of_line_.size());
+  for (const auto& [line, vertex] : vertices_of_line) along[line].push_back(vertex);
+  const auto less_on = [&](int line) {
+    return [this, planes = planes_of_line_[line]](int v, int w) {
+      return along_line_less(partition_, planes[0], planes[1], v, w);
+    };
+  };
+  for (std::size_t line = 0; line < along.size(); ++line)
+    if (along[line].size() > 2)
+      std::sort(along[line].begin(), along[line].end(), less_on(static_cast<int>(line)));
+
+  for (std::size_t k = 0; k < boundary.polygons.size(); ++k) {
+    Boundary::Polygon& polygon = boundary.polygons[k];
+    const Partition::Piece& piece = partition_.pieces[polygon.piece];
+    const std::size_t n = piece.polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const int a = piece.polygon[i], b = piece.polygon[(i + 1) % n];
+      polygon.loop.push_back(a);
+      const std::vector<int>& order = along[lines[k][i]];
+      if (order.size() == 2) continue;
+      const auto less = less_on(lines[k][i]);
+      const auto at = [&](int v) {
+        return std::lower_bound(order.begin(), order.end(), v, less) - order.begin();
+      };
+      const auto from = at(a), to = at(b), step = from < to ? std::ptrdiff_t{1} : -1;
+      for (auto j = from + step; j != to; j += step) polygon.loop.push_back(order[j]);
+    }
+    if (polygon.is_reversed) std::reverse(polygon.loop.begin(), polygon.loop.end());
+  }
+  return boundary;
+}
+
+std::vector<std::vector<int>> find_pinches(const Boundary& boundary) {
+  std::vector<std::vector<int>> loops;
+  loops.reserve(boundary.polygons.size());
+  for (const Boundary::Polygon& polygon : boundary.polygons) loops.push_back(polygon.loop);
+  std::vector<std::vector<int>> pinches = pinched_loops(loops);
+  for (std::vector<int>& pinch : pinches) {
+    std::vector<int> cells;
+    for (const int polygon : pinch) {
+      cells.push_back(boundary.polygons[polygon].inside);
+      cells.push_back(boundary.polygons[polygon].outside);
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    pinch = std::move(cells);
+  }
+  return pinches;
+}
+
+bool is_closed_manifold(const std::vector<Face>& triangles) {
+  std::vector<std::vector<int>> loops;
+  loops.reserve(triangles.size());
+  for (const Face& f : triangles) loops.emplace_back(f.begin(), f.end());
+  return pinched_loops(loops).empty();
+}
+
+}  // namespace colod

@@ -1,0 +1,28 @@
+// Inside room 9: the planes that cut a layer, and where its building certainly ends.
+#pragma once
+
+#include <vector>
+
+#include "extraction.h"
+#include "partition.h"
+#include "planes.h"
+
+namespace colod {
+
+/// What is handed to partition_space, and what must stay outside.
+struct CuttingPlan {
+  std::vector<CutPlane> planes;
+  std::vector<int> input;  ///< per cut plane: the index in Planes::planes whose outline it carries,
+                           ///< −1: none
+  Box box;
+  struct Limit {
+    Vec3 normal;
+    double offset;
+  };
+  std::vector<Limit> limits;  ///< cells with their centroid beyond one of them are outside
+};
+
+CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
+                      const RayScene& rays, const ExtractionOptions& options);
+
+}  // namespace colod

@@ -1,0 +1,55 @@
+// Inside room 9: which cells are inside.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "extraction.h"
+#include "partition.h"
+#include "rays.h"
+
+namespace colod {
+
+/// What speaks for and against each cell.
+struct Evidence {
+  std::vector<double> vote;    ///< per cell, −1 (outside) to 1 (inside)
+  std::vector<double> weight;  ///< per cell, m²: its surface
+  std::vector<double> area;    ///< per piece, m²
+  std::vector<double>
+      coverage;  ///< per piece, 0..1: share under outlines that look along its plane
+  std::vector<double> reversed;  ///< per piece, 0..1: under outlines that look against it
+};
+
+struct VoteOptions {
+  bool is_paper = false;
+  int nr = 100;
+  double escape = 1.0;  ///< robust: what a ray that meets nothing counts against the inside
+};
+
+/// Rays from the cells' centroids (and further points of large cells). Parallel over cells.
+Evidence gather_evidence(const Partition& partition, const RayScene& rays,
+                         const VoteOptions& options);
+
+/// Per piece the share that the outlines of `planes` cover; `input[i]` is the plane of
+/// partition.cuts[i], −1 none.
+void measure_coverage(const Partition& partition, const Planes& planes,
+                      const std::vector<int>& input, Evidence& evidence);
+
+/// More than half of the rays; no smoothing.
+std::vector<char> threshold_cells(const Evidence& evidence, const std::vector<char>& is_forced_out);
+
+/// The labelling of least cost: votes against weight, and `smoothness` × facet area, less where an
+/// outline covers the facet. Of several minima the smallest inside.
+std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence,
+                            const std::vector<char>& is_forced_out, double smoothness);
+
+/// Keeps the largest face-connected set of inside cells by volume; false: there is none.
+bool keep_largest_component(const Partition& partition, std::vector<char>& is_inside);
+/// Turns outside cells that no path of outside cells joins with the space beyond the box.
+void fill_cavities(const Partition& partition, std::vector<char>& is_inside);
+
+/// Turns cells round until the boundary is a closed 2-manifold, smallest first, each at most once,
+/// then only by adding cells, which always ends. Returns the volume turned, m³.
+double mend_pinches(const Partition& partition, std::vector<char>& is_inside);
+
+}  // namespace colod

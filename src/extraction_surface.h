@@ -1,0 +1,65 @@
+// Inside room 9: the surface between inside and outside cells, made 2-manifold and written as
+// polygons.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "geometry.h"
+#include "partition.h"
+
+namespace colod {
+
+/// The pieces between an inside and an outside cell, split at every vertex on their lines, so that
+/// an edge of one is an edge of its neighbours.
+struct Boundary {
+  struct Polygon {
+    int piece;
+    int plane;
+    bool is_reversed;       ///< the outward normal looks against the plane's
+    int inside, outside;    ///< cells; outside −1: beyond the box
+    std::vector<int> loop;  ///< vertex ids, counter-clockwise seen from outside
+  };
+  std::vector<Polygon> polygons;
+};
+
+/// Finds boundaries of one partition; remembers which pairs of planes meet in the same line.
+class BoundaryFinder {
+ public:
+  explicit BoundaryFinder(const Partition& partition) : partition_(partition) {}
+  Boundary find(const std::vector<char>& is_inside);
+
+ private:
+  int line_of(int plane_a, int plane_b);
+  /// Vertices of the boundary that only touch a line of it, as corners of pieces between equal
+  /// cells.
+  void add_touching(const Boundary& boundary, std::vector<std::pair<int, int>>& vertices_of_line);
+
+  const Partition& partition_;
+  std::unordered_map<std::uint64_t, int> line_of_pair_;
+  std::unordered_map<LineId, int, LineIdHash> line_of_id_;
+  std::vector<std::array<int, 2>> planes_of_line_;
+};
+
+/// The cells around each edge with more than two faces and each vertex with more than one fan of
+/// faces; −1 stands for the space beyond the box. Empty: the boundary is a closed 2-manifold.
+std::vector<std::vector<int>> find_pinches(const Boundary& boundary);
+
+/// The same for triangles: every edge once in each direction, every vertex one fan.
+bool is_closed_manifold(const std::vector<Face>& triangles);
+
+/// Facets merged by plane and side, vertices only where three facets meet, exact constrained
+/// Delaunay triangles, doubles at the very end. \pre find_pinches(boundary) is empty. Facets are
+/// sorted by plane id; `plane` is the source plane of the partition's.
+PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
+
+/// Contracts edges shorter than `length` where the surface stays closed and 2-manifold and no
+/// triangle turns over; returns how many.
+int contract_short_edges(PolygonMesh& mesh, double length);
+
+/// The surface around the inside cells: cavities filled (unless kept), pinches mended, the largest
+/// component, short edges contracted. Empty when no cell is inside.
+PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
+                            bool keeps_cavities = false);
+
+}  // namespace colod

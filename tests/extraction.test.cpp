@@ -1,0 +1,212 @@
+#include "../src/extraction.h"
+
+#include <catch2/catch.hpp>
+
+#include "../src/error.h"
+#include "../src/extraction_labels.h"
+#include "../src/parallel.h"
+#include "extraction_helpers.h"
+#include "meshes.h"
+
+using namespace colod;
+using namespace colod::test;
+
+namespace {
+
+void expect_solid(const PolygonMesh& mesh, double volume, double tolerance = 1e-3) {
+  const Check c = check(mesh);
+  CHECK(c.is_closed);
+  CHECK(c.is_fan);
+  CHECK_FALSE(c.is_degenerate);
+  CHECK(c.rings_match);
+  CHECK(c.components == 1);
+  CHECK(signed_volume(mesh.mesh()) == Approx(volume).margin(tolerance));
+}
+
+void expect_counts(const PolygonMesh& mesh, std::size_t vertices, std::size_t facets,
+                   std::size_t triangles) {
+  CHECK(mesh.vertices.size() == vertices);
+  CHECK(mesh.facets.size() == facets);
+  CHECK(mesh.triangles.size() == triangles);
+}
+
+Mesh without_faces(Mesh mesh, const Vec3& normal) {
+  std::erase_if(mesh.faces, [&](const Face& f) {
+    return face_cross(mesh, f).normalized().dot(normal) > 0.999;
+  });
+  return mesh;
+}
+
+/// Extruded L: 10 × 10 without its upper right 6 × 6, 4 high.
+Mesh l_shape() {
+  Mesh m;
+  const std::vector<Vec2> ring = {{0, 0}, {10, 0}, {10, 4}, {4, 4}, {4, 10}, {0, 10}};
+  for (const double z : {0.0, 4.0})
+    for (const Vec2& p : ring) m.vertices.emplace_back(p.x(), p.y(), z);
+  for (int i = 0; i < 6; ++i) {
+    const int j = (i + 1) % 6;
+    m.faces.push_back({i, j, j + 6});
+    m.faces.push_back({i, j + 6, i + 6});
+  }
+  for (const Face& f : {Face{0, 1, 2}, Face{0, 2, 3}, Face{0, 3, 4}, Face{0, 4, 5}}) {
+    m.faces.push_back({f[2], f[1], f[0]});
+    m.faces.push_back({f[0] + 6, f[1] + 6, f[2] + 6});
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a box is a box") {
+  const Extraction e = extract(box_mesh({0, 0, 0}, {8, 6, 5}));
+  expect_solid(e.mesh, 240);
+  expect_counts(e.mesh, 8, 6, 12);
+  CHECK(e.is_manifold);
+  for (const auto& facet : e.mesh.facets) CHECK(facet.plane >= 0);
+}
+
+TEST_CASE("a gable house keeps its ridge") {
+  const Extraction e = extract(gable_house(10, 6, 4, 3));
+  expect_solid(e.mesh, 10 * 6 * 4 + 10 * 6 * 3 / 2.0);
+  expect_counts(e.mesh, 10, 7, 16);
+}
+
+TEST_CASE("a concave body keeps its inner corner") {
+  const Extraction e = extract(l_shape());
+  expect_solid(e.mesh, 4 * (40 + 24));
+  expect_counts(e.mesh, 12, 8, 20);
+}
+
+TEST_CASE("a house without a floor is closed at its foot") {
+  const Extraction e = extract(without_faces(gable_house(10, 6, 4, 3), {0, 0, -1}));
+  expect_solid(e.mesh, 330);
+  expect_counts(e.mesh, 10, 7, 16);
+}
+
+TEST_CASE("a house without floor and party wall is closed at its rectangle") {
+  const Mesh open = without_faces(without_faces(gable_house(10, 6, 4, 3), {0, 0, -1}), {1, 0, 0});
+  const Extraction e = extract(open);
+  expect_solid(e.mesh, 330);
+  expect_counts(e.mesh, 10, 7, 16);
+}
+
+TEST_CASE("a roof alone stands on walls down to the foot") {
+  Mesh roof = gable_house(10, 6, 4, 3);
+  for (const Vec3& n :
+       {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+    roof = without_faces(roof, n);
+  roof.faces.insert(roof.faces.end(), {{0, 1, 2}, {0, 2, 3}});
+  for (int v : {0, 1, 2, 3}) roof.vertices[v] += Vec3(0, 0, 0);
+  const Extraction e = extract(roof);
+  CHECK(check(e.mesh).is_closed);
+  CHECK(signed_volume(e.mesh.mesh()) == Approx(330).epsilon(0.02));
+}
+
+TEST_CASE("a chimney leaves a hole in the roof's facet") {
+  Mesh house = join(box_mesh({0, 0, 0}, {10, 8, 5}), box_mesh({4, 3, 5}, {5, 4, 7}));
+  std::erase_if(house.faces, [&](const Face& f) {
+    return f[0] >= 8 && face_cross(house, f).normalized().z() < -0.9;
+  });
+  const Extraction e = extract(house);
+  expect_solid(e.mesh, 402);
+  CHECK(e.mesh.facets.size() == 11);
+  CHECK(std::count_if(e.mesh.facets.begin(), e.mesh.facets.end(),
+                      [](const auto& f) { return f.rings.size() == 2; }) == 1);
+}
+
+TEST_CASE("paper rules close what is closed") {
+  const Extraction e = extract(gable_house(10, 6, 4, 3), {.is_paper = true});
+  expect_solid(e.mesh, 330);
+  CHECK(e.mesh.vertices.size() == 10);
+}
+
+TEST_CASE("cubes that touch along an edge or at a vertex become one manifold") {
+  using Cubes = std::set<std::array<int, 3>>;
+  const std::vector<std::pair<std::array<int, 3>, Cubes>> cases = {
+      {{3, 2, 1}, {{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}, {0, 1, 0}}},
+      {{2, 2, 1}, {{0, 0, 0}, {1, 1, 0}}},
+      {{2, 2, 2}, {{0, 0, 0}, {1, 1, 1}}},
+      {{2, 2, 2}, {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}},
+      {{2, 2, 3},
+       {{0, 0, 0},
+        {1, 0, 0},
+        {0, 1, 0},
+        {1, 1, 0},
+        {0, 0, 1},
+        {1, 1, 1},
+        {0, 0, 2},
+        {1, 0, 2},
+        {0, 1, 2},
+        {1, 1, 2}}},
+      {{3, 3, 3}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 1, 1}, {1, 1, 1}}},
+  };
+  for (const auto& [size, chosen] : cases) {
+    const Partition grid = cubes(size[0], size[1], size[2]);
+    const PolygonMesh mesh = extract_surface(grid, choose_cubes(grid, chosen));
+    const double volume = signed_volume(mesh.mesh());
+    expect_solid(mesh, std::round(volume), 1e-9);
+    CHECK(volume > 0.5);
+  }
+}
+
+TEST_CASE("any choice of cubes gives a closed 2-manifold with the volume of its cells") {
+  const Partition grid = cubes(4, 4, 4);
+  std::uint64_t state = 1;
+  for (int run = 0; run < 60; ++run) {
+    std::vector<char> is_inside(grid.cells.size());
+    for (char& c : is_inside) {
+      state = state * 6364136223846793005ull + 1442695040888963407ull;
+      c = (state >> 33) % 100 < 30 + static_cast<unsigned>(run) % 50;
+    }
+    std::vector<char> mended = is_inside;
+    fill_cavities(grid, mended);
+    mend_pinches(grid, mended);
+    REQUIRE(keep_largest_component(grid, mended));
+    fill_cavities(grid, mended);
+    const double volume = static_cast<double>(std::count(mended.begin(), mended.end(), 1));
+    const PolygonMesh mesh = extract_surface(grid, is_inside);
+    expect_solid(mesh, volume, 1e-9);
+    CHECK(is_closed_manifold(mesh.triangles));
+  }
+}
+
+TEST_CASE("short edges are contracted") {
+  PolygonMesh mesh = extract(gable_house(10, 6, 4, 3)).mesh;
+  CHECK(contract_short_edges(mesh, 1e-3) == 0);
+  CHECK(contract_short_edges(mesh, 4.5) > 0);
+  CHECK(check(mesh).is_closed);
+}
+
+TEST_CASE("a pinched boundary is seen") {
+  CHECK(is_closed_manifold(box_mesh({0, 0, 0}, {1, 1, 1}).faces));
+  Mesh open = box_mesh({0, 0, 0}, {1, 1, 1});
+  open.faces.pop_back();
+  CHECK_FALSE(is_closed_manifold(open.faces));
+  const Partition grid = cubes(2, 2, 2);
+  BoundaryFinder finder(grid);
+  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 1, 0}}))).size() == 1);
+  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 1, 1}}))).size() == 1);
+  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 0, 0}}))).empty());
+}
+
+TEST_CASE("one and two threads give the same mesh") {
+  const auto run = [](int threads) {
+    limit_threads(threads);
+    const PolygonMesh mesh = extract(join(l_shape(), box_mesh({1, 1, 4}, {3, 3, 6}))).mesh;
+    limit_threads(0);
+    return mesh;
+  };
+  const PolygonMesh one = run(1), two = run(2);
+  CHECK(one.vertices == two.vertices);
+  CHECK(one.triangles == two.triangles);
+  expect_solid(one, 4 * 64 + 8);
+}
+
+TEST_CASE("one wall alone becomes a thin body, no plane is an error") {
+  Mesh wall;
+  wall.vertices = {{0, 0, 0}, {6, 0, 0}, {6, 0, 4}, {0, 0, 4}};
+  wall.faces = {{0, 1, 2}, {0, 2, 3}};
+  const Extraction e = extract(wall);
+  expect_solid(e.mesh, 6 * 4 * 0.5);
+  CHECK_THROWS_AS(extract_layer({}, {}, RayScene(Mesh()), {}), Error);
+}
