@@ -1,0 +1,151 @@
+// Based on: paper section 3.1 ("primary planes"): region growing, a region's outline as α-shape.
+// Differs: --rules paper takes what CGAL's region growing gives at the options' distance, angle and
+// count. Robust drops floaters, measures the noise and grows at three times that, filters by area
+// relative to the building, merges and aligns planes, and repairs their orientation by rays.
+// Notation: item = face of a mesh or point of a cloud; region = items on a plane, not yet a Plane.
+#include "planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "error.h"
+#include "planes_parts.h"
+
+namespace colod {
+namespace {
+
+using namespace regions;
+
+constexpr double kNoiseFactor = 3;
+constexpr double kLeastDistance = 0.03;  // metres
+constexpr double kMostDistance = 0.2;    // metres
+constexpr double kLeastShare = 1e-4;     // of the building's area: the least region
+constexpr double kMostShare = 0.01;      // a region this large is never too small
+constexpr std::size_t kMostPlanes = 4000;
+constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
+
+double used_area(const Items& items) {
+  double sum = 0;
+  for (int i = 0; i < items.size(); ++i)
+    if (items.is_used[i]) sum += items.area[i];
+  return sum;
+}
+
+Box used_box(const Items& items) {
+  Box box;
+  std::array<Vec3, 3> corner;
+  for (int i = 0; i < items.size(); ++i)
+    for (int k = items.is_used[i] ? items.corners(i, corner) : 0; k > 0; --k)
+      box.extend(corner[k - 1]);
+  return box;
+}
+
+double growing_distance(double noise, const Box& box, const PlaneOptions& options) {
+  const double most = std::min({kMostDistance, options.distance, 0.02 * box.diagonal()});
+  return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
+}
+
+/// m²: regions below are no planes. Rougher surfaces need larger ones.
+double least_area(double distance, double total) {
+  const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
+  return std::min(std::max(absolute, kLeastShare * total), kMostShare * total);
+}
+
+/// Drops small regions, but never the largest one.
+void drop_small(const Items& items, double least, int min_points, std::vector<Region>& regions) {
+  const auto is_small = [&](const Region& r) {
+    return r.area < least || (!items.is_mesh() && static_cast<int>(r.items.size()) < min_points);
+  };
+  const bool is_none = std::all_of(regions.begin(), regions.end(), is_small);
+  if (is_none && !regions.empty())
+    regions.resize(1);
+  else
+    std::erase_if(regions, is_small);
+}
+
+void limit_count(std::vector<Region>& regions, std::vector<std::string>& warnings) {
+  if (regions.size() <= kMostPlanes) return;
+  warnings.push_back("kept the largest " + std::to_string(kMostPlanes) + " of " +
+                     std::to_string(regions.size()) + " planes");
+  regions.resize(kMostPlanes);
+}
+
+std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
+  drop_floaters(items, result.warnings);
+  const double noise = estimate_noise(items);
+  result.distance = growing_distance(noise, used_box(items), options);
+  const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
+  std::vector<Region> regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
+  const double least = least_area(result.distance, used_area(items));
+  drop_small(items, least / 4, options.min_points / 2, regions);
+  limit_count(regions, result.warnings);
+  regularize(items, result.distance, regions);
+  drop_small(items, least, options.min_points, regions);
+  absorb_rest(items, result.distance, regions);
+  return regions;
+}
+
+/// Towards where most of the region's area looks.
+void orient_by_items(const Items& items, std::vector<Region>& regions) {
+  for (Region& r : regions) {
+    double vote = 0;
+    for (const int i : r.items) vote += items.area[i] * r.normal.dot(items.normal[i]);
+    if (vote < 0) r.normal = -r.normal, r.offset = -r.offset;
+  }
+}
+
+std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, double distance,
+                             bool is_robust) {
+  std::vector<Outline> outlines = make_outlines(items, regions, distance, is_robust);
+  std::vector<Plane> planes;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (outlines[r].triangles.empty()) continue;
+    Plane p;
+    p.normal = regions[r].normal;
+    p.offset = regions[r].offset;
+    p.area = items.is_mesh() ? regions[r].area : outline_area(outlines[r]);
+    const Vec3 c = regions[r].moments.mean();
+    p.centroid = c - p.signed_distance(c) * p.normal;
+    p.items = std::move(regions[r].items);
+    p.outline = std::move(outlines[r]);
+    planes.push_back(std::move(p));
+  }
+  return planes;
+}
+
+void sort_planes(std::vector<Plane>& planes) {
+  const auto key = [](const Plane& p) {
+    return std::make_tuple(-p.area, p.centroid.x(), p.centroid.y(), p.centroid.z(),
+                           p.items.front());
+  };
+  std::sort(planes.begin(), planes.end(),
+            [&](const Plane& a, const Plane& b) { return key(a) < key(b); });
+}
+
+}  // namespace
+
+Planes detect_planes(const Source& source, const PlaneOptions& options) {
+  Planes result;
+  Items items = collect_items(source);
+  result.distance = options.distance;
+  std::vector<Region> regions =
+      options.is_paper ? grow_with_cgal(items, options) : robust_regions(items, options, result);
+  orient_by_items(items, regions);
+  result.planes = to_planes(items, regions, result.distance, !options.is_paper);
+  if (result.planes.empty())
+    throw Error(Stage::kProcess, source.name, "no plane found: the surface is empty or too small");
+  if (!options.is_paper)
+    if (const int flipped = repair_orientation(result.planes); flipped > 0)
+      result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
+  sort_planes(result.planes);
+  result.box = used_box(items);
+  result.plane_of_item.assign(items.size(), -1);
+  for (std::size_t p = 0; p < result.planes.size(); ++p)
+    for (const int i : result.planes[p].items) result.plane_of_item[i] = static_cast<int>(p);
+  for (const Plane& p : result.planes) result.total_area += items.is_mesh() ? 0 : p.area;
+  if (items.is_mesh()) result.total_area = used_area(items);
+  return result;
+}
+
+}  // namespace colod

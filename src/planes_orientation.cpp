@@ -1,0 +1,111 @@
+// Based on: votes of rays, measured in November 2026: 10 % of planes turned inward do no harm, 30 %
+// break every later room. Differs: --rules robust only; the paper takes the normals as they are.
+// Notation: front = the side the normal points to.
+#include <algorithm>
+#include <cmath>
+
+#include "parallel.h"
+#include "planes_parts.h"
+#include "rays.h"
+
+namespace colod::regions {
+namespace {
+
+constexpr int kSamples = 24;            // places on a plane
+constexpr double kLift = 0.02;          // metres off the plane
+constexpr double kClearMajority = 0.2;  // more of the rays escape at the back
+
+struct Soup {
+  std::vector<Vec3> vertices;
+  std::vector<Face> triangles;
+};
+
+Soup outline_soup(const std::vector<Plane>& planes) {
+  Soup soup;
+  for (const Plane& p : planes) {
+    const int base = static_cast<int>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), p.outline.vertices.begin(), p.outline.vertices.end());
+    for (const Face& t : p.outline.triangles)
+      soup.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  return soup;
+}
+
+/// Places spread evenly over the outline's area, the same at every call.
+std::vector<Vec3> spread_samples(const Outline& outline, int count) {
+  const double total = outline_area(outline);
+  std::vector<Vec3> samples;
+  double passed = 0;
+  for (const Face& t : outline.triangles) {
+    const Vec3 &a = outline.vertices[t[0]], &b = outline.vertices[t[1]],
+               &c = outline.vertices[t[2]];
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    while (total > 0 && static_cast<int>(samples.size()) < count &&
+           (samples.size() + 0.5) / count * total <= passed + area) {
+      // Low-discrepancy barycentric coordinates (golden ratio powers), folded into the triangle.
+      const double k = static_cast<double>(samples.size()) + 1;
+      double s = std::fmod(k * 0.7548776662466927, 1.0), u = std::fmod(k * 0.5698402909980532, 1.0);
+      if (s + u > 1) s = 1 - s, u = 1 - u;
+      samples.push_back(a + s * (b - a) + u * (c - a));
+    }
+    passed += area;
+  }
+  return samples;
+}
+
+/// Rays that a side is judged by: level and upward; slightly downward only for a side that looks
+/// down, because floors are often missing.
+std::vector<Vec3> side_directions(const Vec3& side, const std::vector<Vec3>& up,
+                                  const std::vector<Vec3>& down) {
+  std::vector<Vec3> result;
+  for (const Vec3& d : up)
+    if (d.dot(side) > 0.05) result.push_back(d);
+  for (const Vec3& d : down)
+    if (side.z() < -0.5 && d.dot(side) > 0.05) result.push_back(d);
+  return result;
+}
+
+double escaping_share(const RayScene& scene, const std::vector<Vec3>& samples, const Vec3& side,
+                      const std::vector<Vec3>& directions) {
+  int escaped = 0, count = 0;
+  for (const Vec3& p : samples)
+    for (const Vec3& d : directions) {
+      escaped +=
+          !scene.is_occluded(p + kLift * side, d, 1e-4, std::numeric_limits<double>::infinity());
+      ++count;
+    }
+  return count > 0 ? static_cast<double>(escaped) / count : 0;
+}
+
+void flip(Plane& plane) {
+  plane.normal = -plane.normal;
+  plane.offset = -plane.offset;
+  for (auto& ring : plane.outline.rings) std::reverse(ring.begin(), ring.end());
+  for (Face& t : plane.outline.triangles) std::swap(t[1], t[2]);
+}
+
+}  // namespace
+
+int repair_orientation(std::vector<Plane>& planes) {
+  const Soup soup = outline_soup(planes);
+  if (soup.triangles.empty()) return 0;
+  const RayScene scene(soup.vertices, soup.triangles);
+  const std::vector<Vec3> up = ring_directions(64, std::array<double, 4>{1, 20, 45, 70});
+  const std::vector<Vec3> down = ring_directions(32, std::array<double, 2>{-5, -15});
+  std::vector<char> is_inward(planes.size(), 0);
+  parallel_for(planes.size(), [&](std::size_t i) {
+    const Plane& p = planes[i];
+    const std::vector<Vec3> samples = spread_samples(p.outline, kSamples);
+    const double front =
+        escaping_share(scene, samples, p.normal, side_directions(p.normal, up, down));
+    const double back =
+        escaping_share(scene, samples, -p.normal, side_directions(-p.normal, up, down));
+    is_inward[i] = back > front + kClearMajority && back > 1.5 * front;
+  });
+  int flipped = 0;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    if (is_inward[i]) flip(planes[i]), ++flipped;
+  return flipped;
+}
+
+}  // namespace colod::regions
