@@ -1,0 +1,325 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "../exporters/draco.h"
+#include "../exporters/files.h"
+#include "../exporters/glb.h"
+#include "../exporters/obj.h"
+#include "../exporters/tiles3d.h"
+#include "../src/error.h"
+#include "../src/mesh_io.h"
+#include "exporters_helpers.h"
+
+using namespace colod;
+using namespace colod::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+const Vec3 kFar(691234.567, 5334567.891, 512.345);
+
+/// Writes a file for read_single and reads it back.
+Source read_back(const Encoded& file) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("colod_exporters_" + std::to_string(getpid()));
+  write_file(folder.string(), file);
+  Source source = read_single((folder / file.path).string());
+  fs::remove_all(folder);
+  return source;
+}
+
+double farthest_vertex(const Mesh& from, const std::vector<Vec3>& to) {
+  double worst = 0;
+  for (const Vec3& p : from.vertices) {
+    double best = 1e300;
+    for (const Vec3& q : to) best = std::min(best, (p - q).norm());
+    worst = std::max(worst, best);
+  }
+  return worst;
+}
+
+/// Box of a tile in its JSON.
+Box box_of(const nlohmann::json& tile) {
+  const std::vector<double> b = tile["boundingVolume"]["box"];
+  Box box;
+  box.min = Vec3(b[0] - b[3], b[1] - b[7], b[2] - b[11]);
+  box.max = Vec3(b[0] + b[3], b[1] + b[7], b[2] + b[11]);
+  return box;
+}
+
+const Encoded& find(const std::vector<Encoded>& files, const std::string& path) {
+  for (const Encoded& f : files)
+    if (f.path == path) return f;
+  throw std::runtime_error("no file " + path);
+}
+
+/// Buildings shown by a tile: names from its property table.
+std::vector<std::string> names_in(const Glb& glb) {
+  const auto& table = glb.json["extensions"]["EXT_structural_metadata"]["propertyTables"][0];
+  const auto view = [&](const char* what) {
+    return glb.json["bufferViews"][table["properties"]["name"][what].get<int>()];
+  };
+  const std::size_t values = view("values")["byteOffset"],
+                    offsets = view("stringOffsets")["byteOffset"];
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < table["count"].get<std::size_t>(); ++i) {
+    const std::uint32_t a = u32(glb.binary, offsets + 4 * i),
+                        b = u32(glb.binary, offsets + 4 * i + 4);
+    names.push_back(glb.binary.substr(values + a, b - a));
+  }
+  return names;
+}
+
+/// Checks one tile against its content and children; returns the names of the buildings it covers.
+std::vector<std::string> check_tile(const nlohmann::json& tile, const std::vector<Encoded>& files) {
+  const Glb glb = parse_glb(find(files, tile["content"]["uri"]).bytes);
+  const Decoded content = decode_mesh(glb, 0);
+  Box box = box_of(tile), tight;
+  for (const Vec3& p : content.mesh.vertices) tight.extend(Vec3(p.x(), -p.z(), p.y()));
+  std::vector<std::string> names = names_in(glb), below;
+  std::sort(names.begin(), names.end());
+  if (!tile.contains("children")) CHECK(tile["geometricError"] == 0);
+  for (const auto& child : tile.value("children", nlohmann::json::array())) {
+    CHECK(child["geometricError"].get<double>() < tile["geometricError"].get<double>());
+    tight.extend(box_of(child));
+    for (const std::string& name : check_tile(child, files)) below.push_back(name);
+  }
+  std::sort(below.begin(), below.end());
+  if (tile.contains("children")) CHECK(below == names);
+  CHECK((box.min - tight.min).norm() == 0);
+  CHECK((box.max - tight.max).norm() == 0);
+  return names;
+}
+
+std::vector<ExportBuilding> street(int n) {
+  std::vector<ExportBuilding> buildings;
+  for (int i = 0; i < n; ++i) {
+    buildings.push_back(
+        three_layers("b" + std::to_string(i), kFar + Vec3(20 * (i % 7), 15 * (i / 7), 0)));
+    if (i % 5 == 3) buildings.back().layers.resize(1 + i % 2);
+  }
+  return buildings;
+}
+
+}  // namespace
+
+TEST_CASE("a building GLB has its finest mesh on the root and the others in MSFT_lod") {
+  const Glb glb = parse_glb(encode_building_glb(three_layers("house", kFar)).bytes);
+  const auto& nodes = glb.json["nodes"];
+  CHECK(glb.json["scenes"][0]["nodes"] == nlohmann::json{0});
+  CHECK(nodes[0]["extensions"]["MSFT_lod"]["ids"] == nlohmann::json{1, 2});
+  for (int lod = 0; lod < 3; ++lod) {
+    CHECK(nodes[lod]["name"] == "house_LOD" + std::to_string(lod));
+    CHECK(glb.json["meshes"][nodes[lod]["mesh"].get<int>()]["name"] == nodes[lod]["name"]);
+    CHECK(nodes[lod]["extras"]["layer"] == 2 - lod);
+    CHECK(!nodes[lod].contains("children"));
+  }
+  CHECK(glb.json["extensionsRequired"] == nlohmann::json{"KHR_draco_mesh_compression"});
+  CHECK(glb.json["asset"]["extras"]["origin"][1] == kFar.y());
+}
+
+TEST_CASE("coverage falls strictly from at most 1 to 0 and errors rise with coarseness") {
+  const ExportBuilding house = three_layers("house", kFar);
+  const Glb glb = parse_glb(encode_building_glb(house).bytes);
+  const std::vector<double> c = glb.json["nodes"][0]["extras"]["MSFT_screencoverage"];
+  REQUIRE(c.size() == 3);
+  CHECK(c[0] <= 1);
+  CHECK(c[0] > c[1]);
+  CHECK(c[1] > c[2]);
+  CHECK(c[2] == 0);
+  const double diameter = bounding_box(house.layers[2].mesh.vertices).diagonal();
+  const double eps = glb.json["nodes"][1]["extras"]["geometricError"];
+  CHECK(eps >= 0.9);
+  CHECK(eps <= 0.9 + 0.01);
+  CHECK(c[0] == Approx(2 * diameter / (eps * 1080)));
+}
+
+TEST_CASE("coverage falls strictly even when all errors are nothing") {
+  ExportBuilding house = three_layers("house", kFar);
+  for (ExportLayer& layer : house.layers) layer.geometric_error = 0;
+  const Glb glb = parse_glb(encode_building_glb(house).bytes);
+  const std::vector<double> c = glb.json["nodes"][0]["extras"]["MSFT_screencoverage"];
+  CHECK((1 >= c[0] && c[0] > c[1] && c[1] > c[2] && c[2] == 0));
+}
+
+TEST_CASE("accessors say what a Draco decoder finds") {
+  const Glb glb = parse_glb(encode_building_glb(three_layers("house", kFar)).bytes);
+  for (int m = 0; m < 3; ++m) {
+    const Decoded decoded = decode_mesh(glb, m);
+    const auto& primitive = glb.json["meshes"][m]["primitives"][0];
+    const auto& position = glb.json["accessors"][primitive["attributes"]["POSITION"].get<int>()];
+    CHECK(position["count"] == decoded.mesh.vertices.size());
+    CHECK(!position.contains("bufferView"));
+    CHECK(glb.json["accessors"][primitive["indices"].get<int>()]["count"] ==
+          3 * decoded.mesh.faces.size());
+    const Box box = bounding_box(decoded.mesh.vertices);
+    for (int k = 0; k < 3; ++k) CHECK(position["min"][k] == box.min[k]);
+    for (int k = 0; k < 3; ++k) CHECK(position["max"][k] == box.max[k]);
+  }
+}
+
+TEST_CASE("the coarsest level comes first in the binary chunk") {
+  const Glb glb = parse_glb(encode_building_glb(three_layers("house", kFar)).bytes);
+  std::size_t end = 0;
+  for (int lod = 2; lod >= 0; --lod) {
+    const auto& primitive =
+        glb.json["meshes"][glb.json["nodes"][lod]["mesh"].get<int>()]["primitives"][0];
+    const auto& view =
+        glb.json["bufferViews"]
+                [primitive["extensions"]["KHR_draco_mesh_compression"]["bufferView"].get<int>()];
+    CHECK(view["byteOffset"].get<std::size_t>() >= end);
+    end = view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>();
+  }
+}
+
+TEST_CASE("every level stays within the bound, closed, and lit by its facets' normals") {
+  const ExportBuilding house = three_layers("house", kFar);
+  const Glb glb = parse_glb(encode_building_glb(house, {.quantization = 0.02}).bytes);
+  for (int layer = 0; layer < 3; ++layer) {
+    const Decoded decoded = decode_mesh(glb, layer);
+    std::vector<Vec3> expected;
+    for (const Vec3& p : house.layers[layer].mesh.vertices)
+      expected.emplace_back(p.x(), p.z(), -p.y());
+    CHECK(farthest_vertex(decoded.mesh, expected) <= 0.02);
+    CHECK(farthest_vertex({expected, {}}, decoded.mesh.vertices) <= 0.02);
+    CHECK(is_watertight(decoded.mesh));
+    CHECK(signed_volume(decoded.mesh) ==
+          Approx(signed_volume(house.layers[layer].mesh.mesh())).epsilon(0.02));
+    for (const Face& f : decoded.mesh.faces)
+      for (const int v : f)
+        CHECK(face_cross(decoded.mesh, f).normalized().dot(decoded.normals[v]) > 0.999);
+  }
+}
+
+TEST_CASE("a wall thinner than the grid makes the grid finer instead of opening the mesh") {
+  ExportBuilding house = three_layers("house", kFar);
+  const Mesh fin = box_mesh({2, 8.102, 1}, {3, 8.104, 2});
+  house.layers[2].mesh = as_polygons(join(gable_house(12.3, 8.1, 5.7, 3.3), fin));
+  const Glb glb = parse_glb(encode_building_glb(house, {.quantization = 0.05}).bytes);
+  CHECK(is_watertight(decode_mesh(glb, 2).mesh));
+}
+
+TEST_CASE("reading a building GLB gives its finest layer in world coordinates") {
+  for (const bool has_draco : {true, false}) {
+    const ExportBuilding house = three_layers("house", kFar);
+    const Source s = read_back(encode_building_glb(house, {.has_draco = has_draco}));
+    Mesh world = house.layers[2].mesh.mesh();
+    for (Vec3& p : world.vertices) p += kFar;
+    CHECK(farthest_vertex(s.mesh, world.vertices) <= 0.01);
+    CHECK(s.mesh.faces.size() == world.faces.size());
+    CHECK(is_watertight(s.mesh));
+    CHECK(signed_volume(s.mesh) == Approx(signed_volume(world)).epsilon(0.01));
+  }
+}
+
+TEST_CASE("OBJ and PLY give back every double at 10^6 metres") {
+  const ExportBuilding house = three_layers("house", kFar);
+  for (const ExportLayer& layer : house.layers)
+    for (const Encoded& file : {encode_obj(house, layer), encode_ply(house, layer)}) {
+      const Source s = read_back(file);
+      REQUIRE(s.mesh.vertices.size() == layer.mesh.vertices.size());
+      for (std::size_t i = 0; i < s.mesh.vertices.size(); ++i)
+        CHECK(s.mesh.vertices[i] == layer.mesh.vertices[i] + kFar);
+      CHECK(is_watertight(s.mesh));
+      CHECK(signed_volume(s.mesh) == Approx(signed_volume(layer.mesh.mesh())));
+    }
+}
+
+TEST_CASE("OBJ writes a facet without a hole as one polygon") {
+  const ExportBuilding house = three_layers("house", kFar);
+  const std::string text = encode_obj(house, house.layers[0]).bytes;
+  CHECK(std::count(text.begin(), text.end(), 'f') == 6);
+}
+
+TEST_CASE("a tileset's tiles hold their boxes, errors and buildings") {
+  for (const int n : {1, 5, 40}) {
+    const std::vector<Encoded> files = encode_tileset(street(n));
+    REQUIRE(files.front().path == "tileset.json");
+    const auto tileset = nlohmann::json::parse(files.front().bytes);
+    CHECK(tileset["asset"]["version"] == "1.1");
+    CHECK(tileset["root"]["refine"] == "REPLACE");
+    CHECK(!tileset["root"].contains("transform"));
+    CHECK(tileset["geometricError"].get<double>() >=
+          4 * tileset["root"]["geometricError"].get<double>());
+    CHECK(check_tile(tileset["root"], files).size() == static_cast<std::size_t>(n));
+  }
+}
+
+TEST_CASE("no tile has more than 16 children") {
+  const auto tileset = nlohmann::json::parse(encode_tileset(street(70)).front().bytes);
+  std::vector<nlohmann::json> open = {tileset["root"]};
+  while (!open.empty()) {
+    const auto tile = open.back();
+    open.pop_back();
+    const auto children = tile.value("children", nlohmann::json::array());
+    CHECK(children.size() <= 16);
+    open.insert(open.end(), children.begin(), children.end());
+  }
+}
+
+TEST_CASE("a tile's geometric error is k times its content's") {
+  const auto files =
+      encode_tileset({three_layers("house", kFar)}, {.target_sse = 16, .pixel_error = 4});
+  const auto root = nlohmann::json::parse(files.front().bytes)["root"];
+  CHECK(root["geometricError"].get<double>() == Approx(4 * 2.1).margin(4 * 0.01));
+  CHECK(root["children"][0]["geometricError"].get<double>() == Approx(4 * 0.9).margin(4 * 0.01));
+}
+
+TEST_CASE("feature ids lead from every vertex to its building") {
+  const std::vector<ExportBuilding> buildings = street(3);
+  const auto files = encode_tileset(buildings);
+  const Glb glb = parse_glb(find(files, "tiles/root.glb").bytes);
+  const auto offset = nlohmann::json::parse(files.front().bytes)["asset"]["extras"]["offset"];
+  const Vec3 origin(offset[0], offset[1], offset[2]);
+  const Decoded root = decode_mesh(glb, 0);
+  CHECK(names_in(glb) == std::vector<std::string>{"b0", "b1", "b2"});
+  for (std::size_t i = 0; i < root.features.size(); ++i) {
+    const Vec3& p = root.mesh.vertices[i];
+    const Vec3 local = Vec3(p.x(), -p.z(), p.y()) + origin - buildings[root.features[i]].origin;
+    CHECK(bounding_box(buildings[root.features[i]].layers[0].mesh.vertices).max.x() + 0.02 >
+          local.x());
+    CHECK(local.x() > -0.02);
+  }
+  for (const auto& view : glb.json["bufferViews"]) CHECK(view["byteOffset"].get<int>() % 8 == 0);
+}
+
+TEST_CASE("the same buildings give the same bytes") {
+  const auto a = encode_tileset(street(20)), b = encode_tileset(street(20));
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    CHECK((a[i].path == b[i].path && a[i].bytes == b[i].bytes));
+  CHECK(encode_building_glb(street(1)[0]).bytes == encode_building_glb(street(1)[0]).bytes);
+}
+
+TEST_CASE("grids nest and keep the bound") {
+  for (const double bound : {0.1, 0.01, 0.003}) {
+    const QuantizationGrid grid = fit_grid({Vec3(-3.3, 0, 1), Vec3(40, 20, 30)}, bound);
+    CHECK(grid.error() <= bound);
+    CHECK(std::exp2(std::round(std::log2(grid.step()))) == grid.step());
+    CHECK((grid.round({1.234, 5.678, 9.1}) - Vec3(1.234, 5.678, 9.1)).norm() <= bound);
+  }
+}
+
+TEST_CASE("a building without triangles is refused by name") {
+  ExportBuilding empty = three_layers("hollow", kFar);
+  empty.layers[1].mesh = {};
+  CHECK_THROWS_WITH(encode_building_glb(empty), Catch::Contains("hollow"));
+  CHECK_THROWS_AS(encode_tileset({empty}), Error);
+  CHECK_THROWS_AS(encode_tileset({}), Error);
+}
+
+TEST_CASE("files appear whole, below their folder, or not at all") {
+  const fs::path folder = fs::temp_directory_path() / ("colod_files_" + std::to_string(getpid()));
+  write_file(folder.string(), {"a/b.txt", "first"});
+  write_file(folder.string(), {"a/b.txt", "second"});
+  std::ifstream in(folder / "a/b.txt");
+  std::string text;
+  in >> text;
+  CHECK(text == "second");
+  CHECK(std::distance(fs::directory_iterator(folder / "a"), {}) == 1);
+  CHECK_THROWS_AS(write_file(folder.string(), {"../x", ""}), Error);
+  CHECK_THROWS_WITH(write_file(folder.string(), {"a/b.txt/c", "x"}), Catch::Contains("b.txt"));
+  fs::remove_all(folder);
+}
