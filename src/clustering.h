@@ -22,6 +22,8 @@ struct ClusteringOptions {
   Layering layering = Layering::kSpectral;
   int layers = 3;  ///< l_n
   double eta = 4.0;
+  double size_threshold = 0.8;  ///< metres of extent (standard deviation along the longest axis):
+                                ///< the middle of size's thresholds, which are a factor of 2 apart
   std::uint64_t seed = 1;
 };
 
@@ -32,12 +34,15 @@ struct Clustering {
 };
 
 /// `segments` are those beyond layer 0 of all buildings together. Fewer segments than clusters, or
-/// none, is defined.
+/// none, is
+/// defined: size decides. Deterministic; uses threads.
 Clustering cluster_segments(const std::vector<Descriptor>& segments,
                             const ClusteringOptions& options = {});
 
 /// The planes of layer k of one building: those of segments on layers ≤ k, and planes of no segment
-/// that touch one of those. `layer_of_segment` per segment of the building. Rising plane indices.
+/// that touch one of those (outlines nearer than 0.3 m or twice the planes' distance).
+/// `layer_of_segment` per segment of the building. Rising plane indices; those of k are among those
+/// of k + 1.
 std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
                               const std::vector<int>& layer_of_segment, int k);
 
