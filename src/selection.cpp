@@ -6,9 +6,9 @@
 // --rules robust: f_co(M_i) = Σ_{s∈I_i−M_i} area(s)/area(I_i) · mean_{j≠i} Sim_co(s, I_j − M_j), of
 // the size of f_s; f_r > 0.95; and after the optimum every segment that encloses at least 2 % of
 // the valid voxels joins layer 0 (`added`; objective, bound and gap speak of the optimum before).
-// Both: Sim_co to an empty set is 0, so a building alone has f_co = 0. A program of at most
-// `exact_segments` segments goes to lp_solve whole; otherwise, or when lp_solve's work limit is
-// hit, block ascent from several starts, each block's program solved, and a Lagrangian upper bound.
+// Both: Sim_co to an empty set is 0, so a building alone has f_co = 0. Block ascent from several
+// starts, each block's program solved, and a Lagrangian upper bound; where they do not meet and at
+// most `exact_segments` segments are to be decided, lp_solve gets the whole program.
 //
 // Notation: selection_model.h.
 #include "selection.h"
@@ -70,14 +70,18 @@ Solved solve_by_ascent(const Model& model, const SelectionOptions& options) {
   return {x, std::max(bound.value, objective(model, x))};
 }
 
+// lp_solve is asked only where the bound does not meet the ascent's choice, and believed only if
+// its choice is no worse.
 Solved solve(const Model& model, const SelectionOptions& options, Selection& result) {
-  if (model.size() <= options.exact_segments) {
-    const WholeSolution whole = solve_whole(model);
-    if (whole.is_proven) return {whole.x, objective(model, whole.x)};
-    result.warnings.push_back(
-        "layer 0: the exact program hit its work limit; block ascent with a bound instead");
-  }
-  return solve_by_ascent(model, options);
+  const Solved ascent = solve_by_ascent(model, options);
+  const double value = objective(model, ascent.x);
+  if (model.size() > options.exact_segments || ascent.bound - value <= kOptimalGap) return ascent;
+  const WholeSolution whole = solve_whole(model);
+  if (whole.is_proven && objective(model, whole.x) >= value - kOptimalGap)
+    return {whole.x, objective(model, whole.x)};
+  result.warnings.push_back(
+      "layer 0: the exact program did not end within its work limit; block ascent with a bound");
+  return ascent;
 }
 
 // Every segment that encloses at least this share of its building's voxels; how many were added.
