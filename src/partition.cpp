@@ -153,11 +153,11 @@ void Tree::measure_cells() {
 std::vector<Tree::Part> Tree::push_down(int node, int ring_plane, const Ring& ring) {
   std::vector<Part> parts, open{{node, ring}};
   while (!open.empty()) {
-    const Part part = std::move(open.back());
+    Part part = std::move(open.back());
     open.pop_back();
     const Node& at = nodes_[part.at];
     if (at.plane < 0) {
-      parts.push_back({at.cell, part.ring});
+      parts.push_back({at.cell, std::move(part.ring)});
       continue;
     }
     Ring behind, before;
@@ -198,6 +198,7 @@ void Tree::collect_pieces() {
 
 Partition partition_space(const std::vector<CutPlane>& planes, const Box& box,
                           const PartitionOptions& options) {
+  assert(options.clip_tolerance >= 0);
   Partition partition;
   round_to_grid(planes, box, partition);
   const double tolerance = std::min(options.clip_tolerance, 1e-3 * partition.box.diagonal());

@@ -192,6 +192,19 @@ TEST_CASE("building-like planes make closed convex cells") {
   }
 }
 
+TEST_CASE("the checks see a missing, a moved and a turned piece") {
+  const Partition whole = partition_space(building_like(30, 1), building_box());
+  const auto is_seen = [&](auto&& damage) {
+    Partition p = whole;
+    damage(p);
+    return wrong_cells(p) != wrong_cells(whole);
+  };
+  CHECK(is_seen([](Partition& p) { p.pieces.erase(p.pieces.begin() + 50); }));
+  CHECK(is_seen([](Partition& p) { p.pieces[50].cells[0] = (p.pieces[50].cells[0] + 1) % 9; }));
+  CHECK(
+      is_seen([](Partition& p) { std::swap(p.pieces.back().cells[0], p.pieces.back().cells[1]); }));
+}
+
 TEST_CASE("the sides of a piece's cells are those of its plane") {
   const Partition p = partition_space(building_like(200, 4), building_box());
   for (const Partition::Piece& piece : p.pieces) {

@@ -200,6 +200,19 @@ inline std::string wrong_cell(const Partition& p, const std::vector<std::vector<
   return euler == 2 ? "" : "Euler's number is " + std::to_string(euler);
 }
 
+/// How many cells have which fault.
+inline std::map<std::string, int> wrong_cells(const Partition& p) {
+  std::vector<std::vector<int>> pieces_of(p.cells.size());
+  for (std::size_t i = 0; i < p.pieces.size(); ++i)
+    for (const int cell : p.pieces[i].cells)
+      if (cell >= 0) pieces_of[cell].push_back(static_cast<int>(i));
+  const auto rings = conforming(p);
+  std::map<std::string, int> wrong;
+  for (std::size_t c = 0; c < p.cells.size(); ++c)
+    ++wrong[wrong_cell(p, rings, pieces_of[c], static_cast<int>(c))];
+  return wrong;
+}
+
 inline double total_volume(const Partition& p) {
   double volume = 0;
   for (const Partition::Cell& cell : p.cells) volume += cell.volume;
@@ -214,15 +227,7 @@ inline void check_partition(const Partition& p) {
   std::set<std::array<__int128, 4>> points;
   for (const Partition::Vertex& v : p.vertices) points.insert(v.h);
   CHECK(points.size() == p.vertices.size());
-  std::vector<std::vector<int>> pieces_of(p.cells.size());
-  for (std::size_t i = 0; i < p.pieces.size(); ++i)
-    for (const int cell : p.pieces[i].cells)
-      if (cell >= 0) pieces_of[cell].push_back(static_cast<int>(i));
-  const auto rings = conforming(p);
-  std::map<std::string, int> wrong;
-  for (std::size_t c = 0; c < p.cells.size(); ++c)
-    ++wrong[wrong_cell(p, rings, pieces_of[c], static_cast<int>(c))];
-  for (const auto& [what, count] : wrong) {
+  for (const auto& [what, count] : wrong_cells(p)) {
     INFO(what << " in " << count << " cells");
     CHECK(what == "");
   }
