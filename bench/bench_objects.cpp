@@ -217,7 +217,11 @@ int run(const Settings& settings) {
   if (!stream) throw Error(Stage::kInput, settings.files.back(), "cannot be opened");
   const json labels = json::parse(stream);
   Tallies tallies;
-  json total = {{"building", "total"}, {"planes", 0}, {"segments", 0}, {"kinds", json::object()}};
+  json total = {{"building", "total"},
+                {"planes", 0},
+                {"segments", 0},
+                {"kinds", json::object()},
+                {"seconds", json::object()}};
   for (std::size_t i = 0; i + 1 < settings.files.size(); ++i) {
     const json result = run_building(settings.files[i], labels, settings, tallies);
     for (const char* sum : {"planes", "segments"})
