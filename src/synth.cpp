@@ -152,7 +152,11 @@ std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options) {
   parallel_for(houses.size(), [&](std::size_t i) {
     buildings[i] = finish(houses[i], sites[i], static_cast<int>(i));
   });
-  if (options.is_scan) scan_neighbourhood(buildings, options);
+  if (options.is_scan) {
+    std::vector<Vec3> to_street;
+    for (const Site& s : sites) to_street.push_back(s.to_world(-Vec3::UnitY()) - s.origin);
+    scan_neighbourhood(buildings, to_street, options);
+  }
   return buildings;
 }
 

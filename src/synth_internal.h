@@ -8,6 +8,8 @@
 namespace colod::synth {
 
 /// Replaces every building's clean model by a simulated scan of it among the others.
-void scan_neighbourhood(std::vector<SynthBuilding>& buildings, const SynthOptions& options);
+/// `to_street[i]`: the horizontal unit direction in which building i looks.
+void scan_neighbourhood(std::vector<SynthBuilding>& buildings, const std::vector<Vec3>& to_street,
+                        const SynthOptions& options);
 
 }  // namespace colod::synth
