@@ -113,55 +113,81 @@ Box grow(Box box) {
   return box;
 }
 
-/// Fills `corners` and `scene.plane_of_triangle` with what a horizontal ray can meet.
-void collect_triangles(const Planes& planes, const std::vector<char>& is_active, Scene& scene,
-                       std::vector<Vec3>& corners) {
+/// The triangles that horizontal rays can meet, three corners each, about the scene's centre.
+struct Soup {
+  std::vector<Vec3> corners;
+  std::vector<int> plane_of_triangle;
+
+  void add(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t plane) {
+    if (!(a.allFinite() && b.allFinite() && c.allFinite())) return;
+    corners.insert(corners.end(), {a, b, c});
+    plane_of_triangle.push_back(static_cast<int>(plane));
+  }
+};
+
+/// A strip of this width along each edge that only one of the outline's triangles has.
+void add_border(const Plane& plane, std::size_t p, const Vec3& center, double width, Soup& soup) {
+  std::vector<std::array<int, 2>> edges;
+  for (const Face& f : plane.outline.triangles)
+    for (int k = 0; k < 3; ++k) edges.push_back({f[k], f[(k + 1) % 3]});
+  std::sort(edges.begin(), edges.end());
+  for (const auto& [from, to] : edges) {
+    if (std::binary_search(edges.begin(), edges.end(), std::array{to, from})) continue;
+    const Vec3 a = plane.outline.vertices[from] - center, b = plane.outline.vertices[to] - center;
+    const Vec3 out = (b - a).normalized().cross(plane.normal) * width;
+    soup.add(a, a + out, b + out, p);
+    soup.add(a, b + out, b, p);
+  }
+}
+
+Soup collect_triangles(const Planes& planes, const std::vector<char>& is_active, const Vec3& center,
+                       double border) {
+  Soup soup;
   for (std::size_t p = 0; p < planes.planes.size(); ++p) {
     const Plane& plane = planes.planes[p];
     const bool is_level = std::hypot(plane.normal.x(), plane.normal.y()) < kHorizontal;
     if (!is_on(is_active, p, true) || is_level) continue;
-    for (const Face& f : plane.outline.triangles) {
-      const auto& v = plane.outline.vertices;
-      if (!(v[f[0]].allFinite() && v[f[1]].allFinite() && v[f[2]].allFinite())) continue;
-      for (int k : f) corners.push_back(v[k] - scene.center);
-      scene.plane_of_triangle.push_back(static_cast<int>(p));
-    }
+    const auto& v = plane.outline.vertices;
+    for (const Face& f : plane.outline.triangles)
+      soup.add(v[f[0]] - center, v[f[1]] - center, v[f[2]] - center, p);
+    if (border > 0) add_border(plane, p, center, border, soup);
   }
+  return soup;
+}
+
+void attach(RTCScene scene, const std::vector<Vec3>& corners) {
+  const RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners.size()));
+  auto* index = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), corners.size() / 3));
+  if (!xyz || !index) throw Error(Stage::kProcess, "visibility", "out of memory");
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (int k = 0; k < 3; ++k) xyz[3 * i + k] = static_cast<float>(corners[i][k]);
+    index[i] = static_cast<unsigned>(i);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
 }
 
 void build_scene(const Planes& planes, const std::vector<char>& is_active,
-                 const std::vector<char>& is_reversed, const Vec3& center, Scene& scene) {
-  scene.center = center;
+                 const std::vector<char>& is_reversed, double border, Scene& scene) {
   for (std::size_t p = 0; p < planes.planes.size(); ++p) {
     const double sign = is_on(is_reversed, p, false) ? -1 : 1;
     const Vec3& n = planes.planes[p].normal;
     scene.normal.push_back({sign * n.x(), sign * n.y()});
   }
-  std::vector<Vec3> corners;
-  collect_triangles(planes, is_active, scene, corners);
-  const RTCDevice device = shared_device();
-  scene.embree = rtcNewScene(device);
+  Soup soup = collect_triangles(planes, is_active, scene.center, border);
+  scene.plane_of_triangle = std::move(soup.plane_of_triangle);
+  scene.embree = rtcNewScene(shared_device());
   // Robust: a ray through the common edge of two triangles meets one of them. Embree sorts the
   // triangles of its leaves, so the tree is the same however many threads build it.
   rtcSetSceneFlags(scene.embree, RTC_SCENE_FLAG_ROBUST);
-  if (!corners.empty()) {
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners.size()));
-    auto* index = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(unsigned), corners.size() / 3));
-    if (!xyz || !index) throw Error(Stage::kProcess, "visibility", "out of memory");
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      for (int k = 0; k < 3; ++k) xyz[3 * i + k] = static_cast<float>(corners[i][k]);
-      index[i] = static_cast<unsigned>(i);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene.embree, geometry);
-    rtcReleaseGeometry(geometry);
-  }
+  if (!soup.corners.empty()) attach(scene.embree, soup.corners);
   rtcCommitScene(scene.embree);
-  if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
+  if (rtcGetDeviceError(shared_device()) != RTC_ERROR_NONE)
     throw Error(Stage::kProcess, "visibility", "the ray tracing library refuses the outlines");
 }
 
@@ -408,7 +434,10 @@ HitGrid cast_visibility(const Planes& planes, const VisibilityOptions& options,
 
   const auto start = std::chrono::steady_clock::now();
   Scene scene;
-  build_scene(planes, is_active, is_reversed, grid.box.center(), scene);
+  scene.center = grid.box.center();
+  const double border =
+      options.is_party_wall_rule ? std::max(0.0, options.border_ratio * planes.distance) : 0;
+  build_scene(planes, is_active, is_reversed, border, scene);
   const bool is_wide =
       rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
   if (is_wide)

@@ -187,6 +187,30 @@ TEST_CASE("one missing wall does no harm") {
   CHECK(valid_count(cast_visibility(as_planes(walls), o)) == 11 * 11 * 11);
 }
 
+TEST_CASE(
+    "wider outlines close the cracks at the corners of a room, to the letter they stay open") {
+  auto walls = box_planes({0, 0, 0}, {8, 8, 6});
+  for (Plane& p : walls)
+    for (Vec3& v : p.outline.vertices) v = p.centroid + 0.99 * (v - p.centroid);
+  Planes planes = as_planes(walls);
+  planes.distance = 0.04;
+  VisibilityOptions o = small(9, 200);
+  const HitGrid closed = cast_visibility(planes, o);
+  o.is_party_wall_rule = false;
+  const HitGrid open = cast_visibility(planes, o);
+  const auto is_inner = [](const Vec3& c) {
+    return (c.array() > 0.1).all() && (c.head<2>().array() < 7.9).all() && c.z() < 5.9;
+  };
+  int escaped = 0;
+  for (std::size_t v = 0; v < 729; ++v) {
+    if (!is_inner(open.center(v))) continue;
+    REQUIRE(sums(closed, v).inside == 200);
+    escaped += 200 - sums(open, v).inside;
+  }
+  CHECK(escaped > 100);
+  CHECK(closed.box.min == open.box.min);
+}
+
 TEST_CASE("turned planes are seen from outside, and reversal turns them back") {
   const Planes turned = as_planes(turned_planes(box_planes({0, 0, 0}, {10, 8, 6})));
   const HitGrid alcove = cast_visibility(turned, small(8, 20));
