@@ -104,11 +104,12 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
 
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
                       const RayScene& rays, const ExtractionOptions& options) {
-  (void)rays;
   CuttingPlan plan;
   std::vector<int> every(planes.planes.size());
   std::iota(every.begin(), every.end(), 0);
-  const Box all = outline_box(planes, every);
+  Box all = outline_box(planes, every);
+  if (!options.is_paper && !planes.box.is_empty())
+    all.min.z() = planes.box.min.z();  // walls of airborne clouds end above the ground
   plan.box = all;
   if (!options.is_paper) {
     const Vec3 margin = Vec3::Constant(std::max(kThinnest, kBoxGrowth * all.diagonal()));
@@ -122,6 +123,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes
         {plane.normal, plane.offset, grown_hull(plane, plane.outline.vertices, options.growth), p});
     plan.input.push_back(p);
   }
+  if (!options.is_paper) add_walls(planes, layer_planes, rays, plan);
   return plan;
 }
 

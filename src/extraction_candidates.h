@@ -25,4 +25,9 @@ struct CuttingPlan {
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
                       const RayScene& rays, const ExtractionOptions& options);
 
+/// Appends vertical candidates under roof borders that no plane supports. \pre the sides are in
+/// `plan`.
+void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
+               CuttingPlan& plan);
+
 }  // namespace colod
