@@ -125,19 +125,26 @@ struct Soup {
   }
 };
 
-/// A strip of this width along each edge that only one of the outline's triangles has.
-void add_border(const Plane& plane, std::size_t p, const Vec3& center, double width, Soup& soup) {
+/// The outline's vertices with those on its border moved outward by `width`, so that every edge
+/// that only one triangle has moves by that. Where a spike or a hole is too narrow for it,
+/// triangles turn over: they stay in the plane, and sides are told by the plane, so no harm is
+/// done.
+std::vector<Vec3> widened(const Plane& plane, double width) {
   std::vector<std::array<int, 2>> edges;
   for (const Face& f : plane.outline.triangles)
     for (int k = 0; k < 3; ++k) edges.push_back({f[k], f[(k + 1) % 3]});
   std::sort(edges.begin(), edges.end());
-  for (const auto& [from, to] : edges) {
-    if (std::binary_search(edges.begin(), edges.end(), std::array{to, from})) continue;
-    const Vec3 a = plane.outline.vertices[from] - center, b = plane.outline.vertices[to] - center;
-    const Vec3 out = (b - a).normalized().cross(plane.normal) * width;
-    soup.add(a, a + out, b + out, p);
-    soup.add(a, b + out, b, p);
+  std::vector<Vec3> vertices = plane.outline.vertices;
+  std::vector<Vec3> outward(vertices.size(), Vec3::Zero());  // sum over the vertex's border edges
+  for (const auto& [a, b] : edges) {
+    if (std::binary_search(edges.begin(), edges.end(), std::array{b, a})) continue;
+    const Vec3 out = (vertices[b] - vertices[a]).cross(plane.normal).normalized();
+    outward[a] += out, outward[b] += out;
   }
+  constexpr double kSharpest = 0.5;  // corners sharper than some 40° move by less
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i] += 2 * width / std::max(outward[i].squaredNorm(), kSharpest) * outward[i];
+  return vertices;
 }
 
 Soup collect_triangles(const Planes& planes, const std::vector<char>& is_active, const Vec3& center,
@@ -147,10 +154,9 @@ Soup collect_triangles(const Planes& planes, const std::vector<char>& is_active,
     const Plane& plane = planes.planes[p];
     const bool is_level = std::hypot(plane.normal.x(), plane.normal.y()) < kHorizontal;
     if (!is_on(is_active, p, true) || is_level) continue;
-    const auto& v = plane.outline.vertices;
+    const std::vector<Vec3> v = border > 0 ? widened(plane, border) : plane.outline.vertices;
     for (const Face& f : plane.outline.triangles)
       soup.add(v[f[0]] - center, v[f[1]] - center, v[f[2]] - center, p);
-    if (border > 0) add_border(plane, p, center, border, soup);
   }
   return soup;
 }
