@@ -8,6 +8,7 @@
 #include "extraction.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "error.h"
@@ -19,6 +20,10 @@ namespace colod {
 namespace {
 
 constexpr double kShortest = 1e-3;  // metres: shorter edges are contracted
+constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};
+constexpr double kEnough = 0.6;      // share of the outlines on the surface that ends the search
+constexpr double kWorthwhile = 0.1;  // share that another trial must add
+constexpr double kLittle = 0.2;
 
 std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& plan) {
   std::vector<char> is_forced(partition.cells.size(), 0);
@@ -28,7 +33,8 @@ std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& 
   return is_forced;
 }
 
-/// The inside by falling strictness; empty when nothing is inside at all.
+/// The inside; escaping rays count less where that explains clearly more of the outlines; empty
+/// when nothing is inside at all.
 std::vector<char> label(const Partition& partition, const CuttingPlan& plan, const Planes& planes,
                         const RayScene& rays, const ExtractionOptions& options,
                         std::vector<std::string>& warnings) {
@@ -39,17 +45,21 @@ std::vector<char> label(const Partition& partition, const CuttingPlan& plan, con
         gather_evidence(partition, rays, {.is_paper = true, .nr = options.nr}), is_forced);
     return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
   }
-  for (const double escape : {1.0, 0.5, 0.1}) {
-    Evidence evidence = gather_evidence(partition, rays, {.nr = options.nr, .escape = escape});
-    measure_coverage(partition, planes, plan.input, evidence);
-    is_inside = cut_cells(partition, evidence, is_forced, options.smoothness);
-    if (keep_largest_component(partition, is_inside)) {
-      if (escape < 1.0)
-        warnings.push_back("the layer is so open that few rays decide what is inside");
-      return is_inside;
-    }
+  Evidence evidence = gather_evidence(partition, rays, {.nr = options.nr});
+  measure_coverage(partition, planes, plan.input, evidence);
+  double best = -1;
+  for (const double escape : kEscapes) {
+    std::vector<char> trial = cut_cells(partition, evidence, is_forced,
+                                        {.smoothness = options.smoothness, .escape = escape});
+    if (!keep_largest_component(partition, trial)) continue;
+    const double share = explained_share(partition, evidence, trial);
+    if (share > best + kWorthwhile) best = share, is_inside = std::move(trial);
+    if (best > kEnough) break;
   }
+  if (best < kLittle) warnings.push_back("little of the layer lies on its surface");
+  if (!is_inside.empty()) return is_inside;
   warnings.push_back("no ray sees an inside: the layer is the box around its planes");
+  is_inside.resize(partition.cells.size());
   for (std::size_t c = 0; c < is_inside.size(); ++c) is_inside[c] = !is_forced[c];
   return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
 }

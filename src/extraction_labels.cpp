@@ -28,8 +28,8 @@ namespace colod {
 namespace {
 
 constexpr std::array<double, 3> kElevations = {0, 20, 40};
-constexpr std::array<double, 2> kSteep = {65, 85};
-constexpr double kRoofVote = 0.5;    // of a ray that meets nothing, where a roof stands above
+constexpr std::array<double, 2> kSteep = {80, 88};
+constexpr double kRoofVote = 0.7;    // of a ray that meets nothing, where a roof stands above
 constexpr double kLocalVote = 0.25;  // of an outline for the cells it separates, per m²
 constexpr double kDiscount = 0.9;    // of smoothness on a fully covered facet
 constexpr double kSmallCell = 0.2, kLargeCell = 20;  // m³: one sample below, nine above
@@ -80,14 +80,15 @@ Tally cast(const RayScene& rays, const Vec3& origin, const std::vector<Vec3>& di
   return {inside / n, outside / n};
 }
 
-/// v of one sample: valid minus other hits; a ray that escapes speaks against the inside, unless a
-/// roof stands above.
-double robust_vote(const RayScene& rays, const Vec3& origin, const std::vector<Vec3>& rings,
-                   const std::vector<Vec3>& steep, double escape) {
+/// Adds what one sample says of its cell.
+void add_sample(const RayScene& rays, const Vec3& origin, const std::vector<Vec3>& rings,
+                const std::vector<Vec3>& steep, double share, CellEvidence& cell) {
   const Tally around = cast(rays, origin, rings), above = cast(rays, origin, steep);
   const double roof = std::clamp(above.inside - above.outside, 0.0, 1.0);
   const double escaped = 1 - around.inside - around.outside;
-  return around.inside - around.outside + escaped * ((kRoofVote + escape) * roof - escape);
+  cell.seen += share * (around.inside - around.outside);
+  cell.sheltered += share * escaped * roof;
+  cell.exposed += share * escaped * (1 - roof);
 }
 
 }  // namespace
@@ -115,19 +116,20 @@ Evidence gather_evidence(const Partition& partition, const RayScene& rays,
   const std::vector<Vec3> rings = ring_directions(options.nr, kElevations);
   const std::vector<Vec3> steep = ring_directions(std::max(8, options.nr / 5), kSteep);
   const std::vector<std::vector<int>> vertices = cell_vertices(partition);
-  e.vote.resize(n);
+  e.cells.resize(n);
   parallel_for(
       n,
       [&](std::size_t cell) {
         if (options.is_paper) {
-          e.vote[cell] = 2 * cast(rays, partition.cells[cell].centroid, sphere).inside - 1;
+          const double inside = cast(rays, partition.cells[cell].centroid, sphere).inside;
+          e.cells[cell] = {.seen = 2 * inside - 1, .sheltered = 0, .exposed = 0};
           return;
         }
         const std::vector<Vec3> samples =
             sample_cell(partition, static_cast<int>(cell), vertices[cell]);
-        double sum = 0;
-        for (const Vec3& p : samples) sum += robust_vote(rays, p, rings, steep, options.escape);
-        e.vote[cell] = sum / static_cast<double>(samples.size());
+        for (const Vec3& p : samples)
+          add_sample(rays, p, rings, steep, 1.0 / static_cast<double>(samples.size()),
+                     e.cells[cell]);
       },
       16);
   return e;
@@ -209,9 +211,9 @@ void measure_coverage(const Partition& partition, const Planes& planes,
 
 std::vector<char> threshold_cells(const Evidence& evidence,
                                   const std::vector<char>& is_forced_out) {
-  std::vector<char> is_inside(evidence.vote.size());
+  std::vector<char> is_inside(evidence.cells.size());
   for (std::size_t c = 0; c < is_inside.size(); ++c)
-    is_inside[c] = evidence.vote[c] > 0 && !is_forced_out[c];
+    is_inside[c] = evidence.cells[c].seen > 0 && !is_forced_out[c];
   return is_inside;
 }
 
@@ -263,11 +265,13 @@ std::vector<char> source_side(const Graph& graph, long source) {
 }  // namespace
 
 std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence,
-                            const std::vector<char>& is_forced_out, double smoothness) {
+                            const std::vector<char>& is_forced_out, const CutOptions& options) {
   const long n = static_cast<long>(partition.cells.size()), source = n, sink = n + 1;
   std::vector<Capacity> for_inside(n), for_outside(n);
   for (long c = 0; c < n; ++c) {
-    const double v = evidence.vote[c] * evidence.weight[c];
+    const CellEvidence& cell = evidence.cells[c];
+    const double v = (cell.seen + kRoofVote * cell.sheltered - options.escape * cell.exposed) *
+                     evidence.weight[c];
     for_inside[c] = whole(v), for_outside[c] = whole(-v);
   }
   Graph graph(n + 2);
@@ -281,8 +285,8 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
       for_inside[cell] += whole(kLocalVote * area * (k == 0 ? along : against));
       for_outside[cell] += whole(kLocalVote * area * (k == 0 ? against : along));
     }
-    const Capacity forth = whole(smoothness * area * (1 - kDiscount * along));
-    const Capacity back = whole(smoothness * area * (1 - kDiscount * against));
+    const Capacity forth = whole(options.smoothness * area * (1 - kDiscount * along));
+    const Capacity back = whole(options.smoothness * area * (1 - kDiscount * against));
     const auto [a, b] = partition.pieces[p].cells;
     if (a >= 0 && b >= 0)
       add_arcs(graph, a, b, forth, back);
@@ -305,6 +309,19 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
   std::vector<char> is_inside = source_side(graph, source);
   is_inside.resize(n);
   return is_inside;
+}
+
+double explained_share(const Partition& partition, const Evidence& evidence,
+                       const std::vector<char>& is_inside) {
+  double total = 0, on_surface = 0;
+  const auto inside = [&](int cell) { return cell >= 0 && is_inside[cell]; };
+  for (std::size_t p = 0; p < partition.pieces.size(); ++p) {
+    const auto [behind, before] = partition.pieces[p].cells;
+    total += evidence.area[p] * (evidence.coverage[p] + evidence.reversed[p]);
+    if (inside(behind) && !inside(before)) on_surface += evidence.area[p] * evidence.coverage[p];
+    if (!inside(behind) && inside(before)) on_surface += evidence.area[p] * evidence.reversed[p];
+  }
+  return total > 0 ? on_surface / total : 0;
 }
 
 }  // namespace colod

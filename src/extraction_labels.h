@@ -10,9 +10,16 @@
 
 namespace colod {
 
+/// Shares of the rays of one cell.
+struct CellEvidence {
+  double seen = 0;  ///< valid hits minus others, −1..1; paper: 2 × share of valid hits − 1
+  double sheltered = 0;  ///< that meet nothing although a roof stands above, 0..1
+  double exposed = 0;    ///< that meet nothing, with nothing above, 0..1
+};
+
 /// What speaks for and against each cell.
 struct Evidence {
-  std::vector<double> vote;    ///< per cell, −1 (outside) to 1 (inside)
+  std::vector<CellEvidence> cells;
   std::vector<double> weight;  ///< per cell, m²: its surface
   std::vector<double> area;    ///< per piece, m²
   std::vector<double>
@@ -23,7 +30,6 @@ struct Evidence {
 struct VoteOptions {
   bool is_paper = false;
   int nr = 100;
-  double escape = 1.0;  ///< robust: what a ray that meets nothing counts against the inside
 };
 
 /// Rays from the cells' centroids (and further points of large cells). Parallel over cells.
@@ -38,10 +44,19 @@ void measure_coverage(const Partition& partition, const Planes& planes,
 /// More than half of the rays; no smoothing.
 std::vector<char> threshold_cells(const Evidence& evidence, const std::vector<char>& is_forced_out);
 
-/// The labelling of least cost: votes against weight, and `smoothness` × facet area, less where an
+struct CutOptions {
+  double smoothness = 0.4;  ///< weight of facet area
+  double escape = 1.0;      ///< what an exposed ray counts against the inside
+};
+
+/// The labelling of least cost: votes against weight, and smoothness × facet area, less where an
 /// outline covers the facet. Of several minima the smallest inside.
 std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence,
-                            const std::vector<char>& is_forced_out, double smoothness);
+                            const std::vector<char>& is_forced_out, const CutOptions& options = {});
+
+/// Share of the outlines' area that lies on the surface of the inside, looking outward.
+double explained_share(const Partition& partition, const Evidence& evidence,
+                       const std::vector<char>& is_inside);
 
 /// Keeps the largest face-connected set of inside cells by volume; false: there is none.
 bool keep_largest_component(const Partition& partition, std::vector<char>& is_inside);
