@@ -31,9 +31,10 @@
 namespace colod::selection {
 namespace {
 
-constexpr int kKnapsackNodes = 300;
+constexpr int kKnapsackNodes = 64;
 constexpr int kStepsPerAscent = 40;
-constexpr int kPatience = 12;  // steps without a better bound before the step shrinks
+constexpr int kPatience = 12;          // steps without a better bound before the step shrinks
+constexpr double kLeastFactor = 1e-3;  // of the step: below, the bound stands still
 constexpr double kRounding = 1e-9;
 
 class Relaxation {
@@ -169,7 +170,7 @@ Bound lagrangian_bound(const Model& model, const Choice& incumbent, int steps) {
     }
     if (bound.value <= value + kRounding * std::max(1.0, std::abs(value))) break;
     const double squared = relaxation.squared_subgradient();
-    if (squared == 0) break;
+    if (squared == 0 || factor < kLeastFactor) break;
     relaxation.step(factor * (l - value) / squared);
   }
   bound.value += kRounding * std::max(1.0, std::abs(bound.value));
