@@ -39,6 +39,9 @@ constexpr double kGrowLow = 1e-4 * std::numbers::sqrt2, kGrowHigh = 1e-4 * std::
 constexpr double kHorizontal = 1e-6;
 constexpr double kPartyInside = 0.35, kPartyOutside = 0.02;
 constexpr int kTileX = 4;
+/// Heights are stretched in the tree: horizontal rays do not notice, but the areas by which Embree
+/// builds it become what such rays see of a box. A power of two costs no digits.
+constexpr double kStretch = 64;
 
 RTCDevice shared_device() {
   static const RTCDevice device = rtcNewDevice("verbose=0");  // lives as long as the program
@@ -170,7 +173,9 @@ void attach(RTCScene scene, const std::vector<Vec3>& corners) {
                               3 * sizeof(unsigned), corners.size() / 3));
   if (!xyz || !index) throw Error(Stage::kProcess, "visibility", "out of memory");
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (int k = 0; k < 3; ++k) xyz[3 * i + k] = static_cast<float>(corners[i][k]);
+    xyz[3 * i] = static_cast<float>(corners[i].x());
+    xyz[3 * i + 1] = static_cast<float>(corners[i].y());
+    xyz[3 * i + 2] = static_cast<float>(kStretch * corners[i].z());
     index[i] = static_cast<unsigned>(i);
   }
   rtcCommitGeometry(geometry);
@@ -310,7 +315,7 @@ class Caster {
       const Vec3 c = grid_.center(voxel(x, y, z)) - scene_.center;
       work.rays.ray.org_x[lane] = static_cast<float>(c.x());
       work.rays.ray.org_y[lane] = static_cast<float>(c.y());
-      work.rays.ray.org_z[lane] = static_cast<float>(c.z());
+      work.rays.ray.org_z[lane] = static_cast<float>(kStretch * c.z());
     }
   }
 
