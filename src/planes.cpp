@@ -1,8 +1,9 @@
 // Based on: paper section 3.1 ("primary planes"): region growing, a region's outline as α-shape.
 // Differs: --rules paper takes what CGAL's region growing gives at the options' distance, angle and
-// count. Robust drops floaters, measures the noise and grows at three times that, filters by area
-// relative to the building, merges and aligns planes, and repairs their orientation by rays.
-// Notation: item = face of a mesh or point of a cloud; region = items on a plane, not yet a Plane.
+// count. Robust drops floaters, measures the noise and grows at three times a wall's residual,
+// filters by area relative to the building, merges and aligns planes, and repairs their orientation
+// by rays. Notation: item = face of a mesh or point of a cloud; region = items on a plane, not yet
+// a Plane.
 #include "planes.h"
 
 #include <algorithm>
@@ -17,7 +18,9 @@ namespace {
 
 using namespace regions;
 
-constexpr double kNoiseFactor = 3;
+// Three residuals of a whole wall, which on scans is 2.3 times that of 1.5 m of it (0.012 m against
+// 0.027 m on simulated photogrammetry).
+constexpr double kNoiseFactor = 7;
 constexpr double kLeastDistance = 0.03;  // metres
 constexpr double kMostDistance = 0.2;    // metres
 constexpr double kLeastShare = 1e-4;     // of the building's area: the least region

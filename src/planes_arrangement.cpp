@@ -11,9 +11,9 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace colod::regions {
 namespace {
@@ -23,6 +23,7 @@ using Point = Kernel::Point_2;
 struct FaceInfo {
   int component = -1;
   bool is_inside = false;
+  std::array<bool, 3> is_walked{};
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel>;
@@ -129,10 +130,10 @@ void label(Cdt& cdt, const std::vector<Edge2>& edges) {
 }
 
 /// The ring that begins with edge k of face f, inside on its left.
-std::vector<int> walk_ring(Cdt::Face_handle f, int k,
-                           std::set<std::pair<Cdt::Face_handle, int>>& is_done) {
+std::vector<int> walk_ring(Cdt::Face_handle f, int k) {
   std::vector<int> ring;
-  while (is_done.insert({f, k}).second) {
+  while (!f->info().is_walked[k]) {
+    f->info().is_walked[k] = true;
     ring.push_back(f->vertex(Cdt::ccw(k))->info());
     const Cdt::Vertex_handle end = f->vertex(Cdt::cw(k));
     k = Cdt::ccw(k);  // the edge of f that leaves `end`
@@ -185,11 +186,10 @@ Arrangement arrange(const std::vector<Edge2>& all_edges) {
     }
     result.triangles.push_back(t);
   }
-  std::set<std::pair<Cdt::Face_handle, int>> is_done;
   for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f)
     for (int k = 0; f->info().is_inside && k < 3; ++k)
-      if (!f->neighbor(k)->info().is_inside && !is_done.count({f, k}))
-        result.rings.push_back(walk_ring(f, k, is_done));
+      if (!f->neighbor(k)->info().is_inside && !f->info().is_walked[k])
+        result.rings.push_back(walk_ring(f, k));
   return result;
 }
 

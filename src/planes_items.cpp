@@ -1,7 +1,7 @@
-// Based on: the input side of region growing (Rabbani et al. 2006; paper section 3.1); floaters and
-// noise as measured on simulated photogrammetry in November 2026.
-// Differs: floaters are dropped and the noise is measured under --rules robust only; the paper has
-// neither.
+// Based on: the input side of region growing (Rabbani et al. 2006; paper section 3.1); floaters as
+// measured on simulated photogrammetry in November 2026.
+// Differs: floaters are dropped under --rules robust only; the paper has
+// no such step.
 // Notation: k nearest neighbours of a point; everything else by name.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Orthogonal_k_neighbor_search.h>
@@ -227,24 +227,6 @@ void keep_close_ones(const Items& items, const Components& components, std::vect
   }
 }
 
-/// Items within `radius` of the start (but at least a few), nearest in steps first.
-std::vector<int> neighborhood(const Items& items, int start, double radius,
-                              std::vector<int>& mark) {
-  constexpr std::size_t kLeast = 16, kMost = 4000;
-  std::vector<int> list{start};
-  mark[start] = start;
-  for (std::size_t at = 0; at < list.size() && list.size() < kMost; ++at)
-    for (int k = items.first[list[at]]; k < items.first[list[at] + 1]; ++k) {
-      const int j = items.neighbor[k];
-      if (mark[j] == start || std::abs(items.normal[j].dot(items.normal[start])) < 0.5) continue;
-      if (list.size() >= kLeast && (items.center[j] - items.center[start]).norm() > radius)
-        continue;
-      mark[j] = start;
-      list.push_back(j);
-    }
-  return list;
-}
-
 }  // namespace
 
 int Items::corners(int item, std::array<Vec3, 3>& out) const {
@@ -282,47 +264,6 @@ void drop_floaters(Items& items, std::vector<std::string>& warnings) {
     if (components.of_item[i] >= 0 && !is_kept[components.of_item[i]]) items.is_used[i] = 0;
   warnings.push_back("dropped " + std::to_string(dropped) +
                      " small components far from the building");
-}
-
-double estimate_noise(const Items& items) {
-  constexpr int kSamples = 600;
-  constexpr double kRadius = 0.5;
-  const double total = std::accumulate(items.area.begin(), items.area.end(), 0.0);
-  std::vector<double> residuals;
-  std::vector<int> mark(items.size(), -1);
-  double passed = 0;
-  for (int i = 0; i < items.size() && total > 0; ++i) {
-    const auto before = std::floor(passed / total * kSamples);
-    passed += items.area[i];
-    if (!items.is_used[i] || std::floor(passed / total * kSamples) == before) continue;
-    Moments m;
-    for (const int j : neighborhood(items, i, kRadius, mark)) m.add_item(items, j);
-    const Vec3 n = m.fit(items.normal[i]);
-    residuals.push_back(m.rms(n, n.dot(m.mean())));
-  }
-  if (residuals.empty()) return 0;
-  std::sort(residuals.begin(), residuals.end());
-  return residuals[residuals.size() / 4];
-}
-
-std::vector<Vec3> smooth_normals(const Items& items, int rounds) {
-  std::vector<Vec3> now = items.normal, next(now.size());
-  for (int round = 0; round < rounds; ++round) {
-    parallel_ranges(now.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Vec3 sum = items.area[i] * now[i];
-        for (int k = items.first[i]; k < items.first[i + 1]; ++k) {
-          const int j = items.neighbor[k];
-          const double way = items.way[k] != 0 ? items.way[k] : now[i].dot(now[j]) < 0 ? -1 : 1;
-          sum += way * items.area[j] * now[j];
-        }
-        const double length = sum.norm();
-        next[i] = length > 1e-12 ? Vec3(sum / length) : now[i];
-      }
-    });
-    now.swap(next);
-  }
-  return now;
 }
 
 }  // namespace colod::regions

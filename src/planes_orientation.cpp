@@ -11,9 +11,11 @@
 namespace colod::regions {
 namespace {
 
-constexpr int kSamples = 24;            // places on a plane
-constexpr double kLift = 0.02;          // metres off the plane
-constexpr double kClearMajority = 0.2;  // more of the rays escape at the back
+constexpr int kSamples = 24;    // places on a plane
+constexpr double kLift = 0.02;  // metres off the plane
+// A plane looks inward when most rays escape at its back and few at its front. Both: an open sheet,
+// which keeps the normals it was scanned with.
+constexpr double kLeastBack = 0.5, kMostFront = 0.35, kClearMajority = 0.35;
 
 struct Soup {
   std::vector<Vec3> vertices;
@@ -100,7 +102,7 @@ int repair_orientation(std::vector<Plane>& planes) {
         escaping_share(scene, samples, p.normal, side_directions(p.normal, up, down));
     const double back =
         escaping_share(scene, samples, -p.normal, side_directions(-p.normal, up, down));
-    is_inward[i] = back > front + kClearMajority && back > 1.5 * front;
+    is_inward[i] = back >= kLeastBack && front <= kMostFront && back - front >= kClearMajority;
   });
   int flipped = 0;
   for (std::size_t i = 0; i < planes.size(); ++i)

@@ -2,6 +2,8 @@
 // other rooms.
 #pragma once
 
+#include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -64,7 +66,10 @@ struct GrowingOptions {
 Items collect_items(const Source& source);
 /// Marks small components far from the rest as unused; says how many in a warning.
 void drop_floaters(Items& items, std::vector<std::string>& warnings);
-/// Root mean square distance of small neighbourhoods from their own planes, metres: lower quartile.
+
+// planes_noise.cpp
+/// Root mean square distance of neighbourhoods of 1.5 m from their own planes, metres: the flattest
+/// tenth of them.
 double estimate_noise(const Items& items);
 /// Normals averaged over neighbours, for the angle test only.
 std::vector<Vec3> smooth_normals(const Items& items, int rounds);

@@ -230,8 +230,10 @@ void align_directions(std::vector<Region>& regions, double distance) {
     bool is_aligned = kinds[i] == Kind::kLevel;
     for (std::size_t k = 0; k < families.size() && !is_aligned; ++k)
       is_aligned = try_family(r, families[k], distance);
-    if (kinds[i] == Kind::kSlope && !try_tilts(r, tilts, distance))
+    if (kinds[i] == Kind::kSlope && !try_tilts(r, tilts, distance)) {
       tilts.push_back(std::atan2(std::hypot(r.normal.x(), r.normal.y()), std::abs(r.normal.z())));
+      try_tilts(r, {tilts.back()}, distance);  // the same arithmetic as for those that follow it
+    }
     for (std::size_t k = 0; k < table.known.size() && !is_aligned; ++k)
       is_aligned = try_direction(r, table.known[k], distance);
     r.normal = table.same(r.normal.normalized());
