@@ -132,11 +132,16 @@ class BlockSearch {
   // D and the taken items as far as they fit together; with an offer, also all that fit.
   void try_greedy(const std::vector<int>& order) {
     const std::vector<Fate> saved = fate_;
+    for (const int i : order) fate_[i] = Fate::kDropped;
     double loss = losses();
-    for (const int i : order) {
-      if (loss + marginal_[i] > block_.capacity) continue;
-      fate_[i] = Fate::kDropped;
+    if (loss > block_.capacity) {  // overlaps: one after the other, each at its loss by then
+      fate_ = saved;
       loss = losses();
+      for (const int i : order) {
+        if (loss + marginal_[i] > block_.capacity) continue;
+        fate_[i] = Fate::kDropped;
+        loss = losses();
+      }
     }
     double value = -loss;
     for (int i = 0; i < block_.count; ++i)

@@ -31,7 +31,7 @@
 namespace colod::selection {
 namespace {
 
-constexpr int kKnapsackNodes = 64;
+constexpr int kKnapsackNodes = 200;
 constexpr int kStepsPerAscent = 40;
 constexpr int kPatience = 12;          // steps without a better bound before the step shrinks
 constexpr double kLeastFactor = 1e-3;  // of the step: below, the bound stands still
