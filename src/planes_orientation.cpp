@@ -15,7 +15,8 @@ constexpr int kSamples = 24;    // places on a plane
 constexpr double kLift = 0.02;  // metres off the plane
 // A plane looks inward when most rays escape at its back and few at its front. Both: an open sheet,
 // which keeps the normals it was scanned with.
-constexpr double kLeastBack = 0.5, kMostFront = 0.35, kClearMajority = 0.35;
+constexpr double kLeastBack = 0.5, kMostFront = 0.35, kMostFrontOfFloor = 0.05,
+                 kClearMajority = 0.35;
 
 struct Soup {
   std::vector<Vec3> vertices;
@@ -102,7 +103,9 @@ int repair_orientation(std::vector<Plane>& planes) {
         escaping_share(scene, samples, p.normal, side_directions(p.normal, up, down));
     const double back =
         escaping_share(scene, samples, -p.normal, side_directions(-p.normal, up, down));
-    is_inward[i] = back >= kLeastBack && front <= kMostFront && back - front >= kClearMajority;
+    // What looks up was seen from above; only a floor shut in on all sides is turned down.
+    const double most_front = p.normal.z() > 0.5 ? kMostFrontOfFloor : kMostFront;
+    is_inward[i] = back >= kLeastBack && front <= most_front && back - front >= kClearMajority;
   });
   int flipped = 0;
   for (std::size_t i = 0; i < planes.size(); ++i)
