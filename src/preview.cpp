@@ -166,7 +166,7 @@ double splat_radius(const PointCloud& cloud, const Box& box) {
   if (cloud.points.empty()) return 0;
   const Vec3 s = box.size();
   const double surface = 2 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
-  return 0.7 * std::sqrt(surface / static_cast<double>(cloud.points.size()));
+  return 0.9 * std::sqrt(surface / static_cast<double>(cloud.points.size()));
 }
 
 /// The nearest point over each sample; equal depth goes to the first point.
