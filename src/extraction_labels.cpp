@@ -32,6 +32,7 @@ constexpr std::array<double, 2> kSteep = {80, 88};
 constexpr double kRoofVote = 0.7;    // of a ray that meets nothing, where a roof stands above
 constexpr double kLocalVote = 0.25;  // of an outline for the cells it separates, per m²
 constexpr double kDiscount = 0.9;    // of smoothness on a fully covered facet
+constexpr double kThinCell = 0.1;    // metres: thinner cells follow their neighbours
 constexpr double kSmallCell = 0.2, kLargeCell = 20;  // m³: one sample below, nine above
 
 /// Vertices of each cell, rising.
@@ -112,6 +113,8 @@ Evidence gather_evidence(const Partition& partition, const RayScene& rays,
     for (const int cell : piece.cells)
       if (cell >= 0) e.weight[cell] += e.area[p];
   }
+  for (std::size_t c = 0; c < n; ++c)
+    e.weight[c] = std::min(e.weight[c], 2 * partition.cells[c].volume / kThinCell);
   const std::vector<Vec3> sphere = sphere_directions(options.nr);
   const std::vector<Vec3> rings = ring_directions(options.nr, kElevations);
   const std::vector<Vec3> steep = ring_directions(std::max(8, options.nr / 5), kSteep);

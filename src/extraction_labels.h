@@ -20,7 +20,7 @@ struct CellEvidence {
 /// What speaks for and against each cell.
 struct Evidence {
   std::vector<CellEvidence> cells;
-  std::vector<double> weight;  ///< per cell, m²: its surface
+  std::vector<double> weight;  ///< per cell, m²: its surface, less for thin cells
   std::vector<double> area;    ///< per piece, m²
   std::vector<double>
       coverage;  ///< per piece, 0..1: share under outlines that look along its plane

@@ -257,7 +257,7 @@ void settle_diagonals(std::vector<MergedFacet>& facets, std::vector<Vec3>& point
   }
 }
 
-/// Length² of the projections' cross product: no triangle may turn over by more than 60°.
+/// No triangle may turn by more than 60 degrees; the arguments are cross products of its sides.
 bool keeps_direction(const Vec3& before, const Vec3& after) {
   return before.dot(after) > 0.5 * before.norm() * after.norm() && after.norm() > 0;
 }
@@ -300,7 +300,7 @@ class Contraction {
   /// Removes what was contracted from triangles, rings, facets and vertices.
   void finish();
 
-  int planes_at(int v) const {
+  int facets_at(int v) const {
     std::set<int> facets;
     for (const int t : triangles_of_[v]) facets.insert(mesh_.facet_of_triangle[t]);
     return static_cast<int>(facets.size());
@@ -414,25 +414,29 @@ PolygonMesh build_surface(const Partition& partition, const Boundary& boundary) 
 }
 
 int contract_short_edges(PolygonMesh& mesh, double length) {
-  std::vector<std::tuple<double, int, int>> edges;
-  for (const Face& f : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const int a = f[i], b = f[(i + 1) % 3];
-      const double d = (mesh.vertices[a] - mesh.vertices[b]).norm();
-      if (a < b && d < length) edges.emplace_back(d, a, b);
+  constexpr int kPasses = 5;  // what one contraction forbids another may allow
+  int total = 0;
+  for (int pass = 0, count = 1; pass < kPasses && count > 0; ++pass, total += count) {
+    std::vector<std::tuple<double, int, int>> edges;
+    for (const Face& f : mesh.triangles)
+      for (int i = 0; i < 3; ++i) {
+        const int a = f[i], b = f[(i + 1) % 3];
+        const double d = (mesh.vertices[a] - mesh.vertices[b]).norm();
+        if (a < b && d < length) edges.emplace_back(d, a, b);
+      }
+    count = 0;
+    if (edges.empty()) break;
+    std::sort(edges.begin(), edges.end());
+    Contraction contraction(mesh);
+    for (const auto& [d, a, b] : edges) {
+      // The vertex with fewer planes moves, so that as few facets as possible bend.
+      const bool a_moves = contraction.facets_at(a) <= contraction.facets_at(b);
+      const int from = a_moves ? a : b, to = a_moves ? b : a;
+      count += contraction.contract(from, to) || contraction.contract(to, from);
     }
-  if (edges.empty()) return 0;
-  std::sort(edges.begin(), edges.end());
-  Contraction contraction(mesh);
-  int count = 0;
-  for (const auto& [d, a, b] : edges) {
-    // The vertex with fewer planes moves, so that as few facets as possible bend.
-    const bool a_moves = contraction.planes_at(a) <= contraction.planes_at(b);
-    const int from = a_moves ? a : b, to = a_moves ? b : a;
-    count += contraction.contract(from, to) || contraction.contract(to, from);
+    contraction.finish();
   }
-  contraction.finish();
-  return count;
+  return total;
 }
 
 }  // namespace colod

@@ -1,6 +1,9 @@
 #include "../src/extraction.h"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "../src/error.h"
 #include "../src/extraction_labels.h"
@@ -34,6 +37,55 @@ Mesh without_faces(Mesh mesh, const Vec3& normal) {
   std::erase_if(mesh.faces, [&](const Face& f) {
     return face_cross(mesh, f).normalized().dot(normal) > 0.999;
   });
+  return mesh;
+}
+
+Mesh without_walls(Mesh mesh) {
+  std::erase_if(mesh.faces, [&](const Face& f) {
+    return std::abs(face_cross(mesh, f).normalized().z()) < 0.01;
+  });
+  return mesh;
+}
+
+/// The border of an outline's triangles as one ring, corners of different triangles welded.
+std::vector<int> ring_of(const Outline& outline) {
+  const auto weld = [&](int v) {
+    int first = 0;
+    while (outline.vertices[first] != outline.vertices[v]) ++first;
+    return first;
+  };
+  std::map<int, int> next;
+  std::set<std::pair<int, int>> edges;
+  for (const Face& f : outline.triangles)
+    for (int i = 0; i < 3; ++i) edges.insert({weld(f[i]), weld(f[(i + 1) % 3])});
+  for (const auto& [a, b] : edges)
+    if (!edges.count({b, a})) next[a] = b;
+  std::vector<int> ring = {next.begin()->first};
+  while (next[ring.back()] != ring.front()) ring.push_back(next[ring.back()]);
+  return ring;
+}
+
+/// Vertices and polygons of an OBJ file, about its first vertex.
+Mesh read_plain_obj(const std::filesystem::path& path) {
+  Mesh mesh;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "v") {
+      Vec3 p;
+      words >> p.x() >> p.y() >> p.z();
+      mesh.vertices.push_back(mesh.vertices.empty() ? p : Vec3(p - mesh.vertices[0]));
+    } else if (word == "f") {
+      std::vector<int> polygon;
+      while (words >> word) polygon.push_back(std::stoi(word) - 1);
+      for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        mesh.faces.push_back({polygon[0], polygon[i], polygon[i + 1]});
+    }
+  }
+  if (!mesh.vertices.empty()) mesh.vertices[0].setZero();
+  std::erase_if(mesh.faces, [&](const Face& f) { return face_area(mesh, f) < 1e-6; });
   return mesh;
 }
 
@@ -91,15 +143,66 @@ TEST_CASE("a house without floor and party wall is closed at its rectangle") {
 }
 
 TEST_CASE("a roof alone stands on walls down to the foot") {
-  Mesh roof = gable_house(10, 6, 4, 3);
-  for (const Vec3& n :
-       {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
-    roof = without_faces(roof, n);
-  roof.faces.insert(roof.faces.end(), {{0, 1, 2}, {0, 2, 3}});
-  for (int v : {0, 1, 2, 3}) roof.vertices[v] += Vec3(0, 0, 0);
+  const Mesh roof = without_walls(gable_house(10, 6, 4, 3));
   const Extraction e = extract(roof);
-  CHECK(check(e.mesh).is_closed);
-  CHECK(signed_volume(e.mesh.mesh()) == Approx(330).epsilon(0.02));
+  expect_solid(e.mesh, 330);
+  expect_counts(e.mesh, 10, 7, 16);
+}
+
+TEST_CASE("a concave flat roof alone gets walls under all its borders") {
+  Planes planes = planes_of_mesh(without_walls(l_shape()));
+  std::erase_if(planes.planes, [](const Plane& p) { return p.normal.z() < 0; });
+  planes.planes.front().outline.rings = {ring_of(planes.planes.front().outline)};
+  const Extraction e =
+      extract_layer(planes, all_planes(planes), RayScene(outline_soup(planes)), {});
+  expect_solid(e.mesh, 4 * 64);
+  expect_counts(e.mesh, 12, 8, 20);
+}
+
+TEST_CASE("a dormer and an annex stay on their house") {
+  Mesh house = join(gable_house(10, 6, 4, 3), box_mesh({10, 1, 0}, {13, 4, 3}));
+  house = join(house, box_mesh({4, 0.5, 4.2}, {6, 2.5, 6}));
+  const Extraction e = extract(house);
+  const Check c = check(e.mesh);
+  CHECK(c.is_closed);
+  CHECK(c.is_fan);
+  CHECK(c.components == 1);
+  // The dormer stands above the roof's slope z = 4 + y from y = 0.5 to 2 (its top at 6).
+  CHECK(signed_volume(e.mesh.mesh()) == Approx(330 + 27 + 2 * 1.5 * 1.5 / 2).margin(0.05));
+}
+
+TEST_CASE("a layer of few planes still gives a body") {
+  const Planes planes = planes_of_mesh(gable_house(10, 6, 4, 3));
+  const RayScene rays(outline_soup(planes));
+  for (std::size_t n = 1; n <= planes.planes.size(); ++n) {
+    std::vector<int> layer = all_planes(planes);
+    layer.resize(n);
+    const PolygonMesh mesh = extract_layer(planes, layer, rays).mesh;
+    CHECK(check(mesh).is_closed);
+    CHECK(check(mesh).is_fan);
+    CHECK(signed_volume(mesh.mesh()) > 1);
+  }
+}
+
+TEST_CASE("simple block models are closed with their own volume") {
+  const std::filesystem::path folder = COLOD_SOURCE_DIR "/../shared/data/delft";
+  if (!std::filesystem::exists(folder)) {
+    WARN("skipped: the data folder is not there");
+    return;
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".obj") continue;
+    ++files;
+    INFO(entry.path().filename().string());
+    const Extraction e = extract(read_plain_obj(entry.path()));
+    const Check c = check(e.mesh);
+    CHECK(c.is_closed);
+    CHECK(c.is_fan);
+    CHECK(c.components == 1);
+    CHECK(signed_volume(e.mesh.mesh()) > 1);
+  }
+  CHECK(files > 0);
 }
 
 TEST_CASE("a chimney leaves a hole in the roof's facet") {

@@ -16,7 +16,8 @@
 
 namespace colod::test {
 
-/// One plane per set of coplanar faces with equal normals, largest first, faces as the outline.
+/// One plane per set of coplanar faces with equal normals, largest first, faces as the outline
+/// (each a ring of its own).
 inline Planes planes_of_mesh(const Mesh& mesh) {
   Planes planes;
   std::map<std::array<long, 4>, std::vector<Face>> groups;
@@ -43,6 +44,8 @@ inline Planes planes_of_mesh(const Mesh& mesh) {
       plane.centroid += face_area(mesh, f) * sum;
     }
     plane.centroid /= plane.area;
+    for (const Face& f : plane.outline.triangles)
+      plane.outline.rings.emplace_back(f.begin(), f.end());
     planes.total_area += plane.area;
     planes.planes.push_back(plane);
   }
