@@ -138,6 +138,9 @@ Box write_content(Scene& scene, const std::vector<Part>& parts, const std::strin
     append(merged, flatten(parts[i].layer->mesh, scene.offset(*parts[i].building), grid,
                            static_cast<int>(i)));
   GltfDocument document = start_gltf();
+  const Vec3& o = scene.origin;
+  document.json["asset"]["extras"] = {{"origin", {o.x(), o.y(), o.z()}},
+                                      {"originAxes", "z up, metres"}};
   Box seen;
   Json primitive = add_primitive(document, merged, grid, scene.options.has_draco, &seen);
   primitive["extensions"]["EXT_mesh_features"]["featureIds"] =
