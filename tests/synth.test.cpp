@@ -146,6 +146,55 @@ TEST_CASE("the truth names buildings and parts") {
     CHECK(truth.find(key) != std::string::npos);
 }
 
+TEST_CASE("a scan follows its building, open below, with holes and floaters") {
+  const SynthOptions options = {.buildings = 3, .seed = 2, .is_scan = true, .density = 25};
+  const auto scans = make_neighbourhood(options), models = clean(3, 2);
+  int floaters = 0;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const Mesh &scan = scans[i].source.mesh, &model = models[i].source.mesh;
+    const Validity v = check_validity(scan, false);
+    CHECK(v.boundary_edges > 0);
+    CHECK(v.components > 1);
+    CHECK(v.nonmanifold_edges == 0);
+    CHECK(v.area < 1.1 * surface_area(model));
+    CHECK(v.area > 0.4 * surface_area(model));
+    const Distances d = measure_distances(scan, model, {.samples = 20000});
+    CHECK(d.mean_a_to_b > 0.01);
+    CHECK(d.mean_a_to_b < 0.1);
+    REQUIRE(scans[i].source.face_object.size() == scan.faces.size());
+    for (int object : scans[i].source.face_object) {
+      CHECK(object < static_cast<int>(scans[i].parts.size()));
+      floaters += object < 0;
+    }
+    CHECK(scans[i].parts.size() == models[i].parts.size());
+  }
+  CHECK(floaters > 50);
+}
+
+TEST_CASE("a scan's roof faces the sky and there is no floor") {
+  const auto scan = make_neighbourhood({.buildings = 1, .seed = 6, .is_scan = true, .density = 20});
+  const Mesh& mesh = scan[0].source.mesh;
+  double up = 0, down = 0, floor = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Vec3 cross = face_cross(mesh, mesh.faces[f]);
+    if (scan[0].source.face_object[f] == 1) (cross.z() > 0 ? up : down) += cross.norm() / 2;
+    if (std::abs(cross.z()) > 0.9 * cross.norm() && mesh.vertices[mesh.faces[f][0]].z() < 0.05)
+      floor += cross.norm() / 2;
+  }
+  CHECK(up > 20 * down);
+  CHECK(floor < 1);
+}
+
+TEST_CASE("a scan is the same with one thread and two") {
+  const SynthOptions options = {.buildings = 2, .seed = 3, .is_scan = true, .density = 12};
+  limit_threads(1);
+  const auto one = make_neighbourhood(options);
+  limit_threads(2);
+  const auto two = make_neighbourhood(options);
+  limit_threads(0);
+  for (std::size_t i = 0; i < one.size(); ++i) CHECK(is_equal(one[i], two[i]));
+}
+
 TEST_CASE("nothing to build is an error") {
   CHECK_THROWS_AS(make_neighbourhood({.buildings = 0}), Error);
   CHECK_THROWS_AS(make_neighbourhood({.buildings = 1, .density = 0}), Error);
