@@ -162,7 +162,8 @@ void mesh_building(Building& b, const Options& options) {
   try {
     const RayScene rays(outline_soup(b.planes));
     for (int k = 0; k < options.layers; ++k) {
-      Layer layer{.layer = k};
+      Layer layer;
+      layer.layer = k;
       layer.segments = static_cast<int>(std::count_if(
           b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
       Stopwatch watch(b.timings.extraction);
