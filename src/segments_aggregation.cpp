@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 #include <numeric>
 #include <queue>
 #include <unordered_map>
@@ -205,9 +206,36 @@ bool merge_best_first(GroupForest& forest, const std::vector<GroupPair>& pairs, 
   return is_changed;
 }
 
+struct Contact {
+  int a, b;  // a > b; b −1: nothing
+  std::int64_t faces;
+};
+
+/// Voxel faces between groups, and between a group and nothing.
+std::vector<Contact> group_contacts(const HitGrid& grid, const VoxelGroups& groups) {
+  if (groups.groups.empty()) return {};
+  const std::ptrdiff_t n = grid.ns;
+  const std::vector<int>& of = groups.group_of_voxel;
+  std::map<GroupPair, std::int64_t> faces;
+  const auto add = [&](int a, int b) {
+    if (a != b) ++faces[{std::max(a, b), std::min(a, b)}];
+  };
+  const std::ptrdiff_t steps[] = {1, n, n * n};
+  for (std::ptrdiff_t v = 0; v < n * n * n; ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::ptrdiff_t at = v / steps[axis] % n;
+      if (at == 0) add(of[v], -1);
+      add(of[v], at + 1 < n ? of[v + steps[axis]] : -1);
+    }
+  std::vector<Contact> out;
+  for (const auto& [pair, count] : faces) out.push_back({pair.first, pair.second, count});
+  return out;
+}
+
 }  // namespace
 
 std::int64_t voxel_around(const HitGrid& grid, const Vec3& x) {
+  if (grid.box.is_empty()) return -1;
   const Vec3 size = grid.voxel_size();
   std::int64_t voxel = 0;
   for (int k = 2; k >= 0; --k) {
@@ -243,6 +271,7 @@ VoxelGroups group_voxels(const HitGrid& grid, const HitFilter& filter) {
 }
 
 std::vector<GroupPair> adjacent_groups(const HitGrid& grid, const VoxelGroups& groups) {
+  if (groups.groups.empty()) return {};
   const std::size_t n = static_cast<std::size_t>(grid.ns);
   const std::vector<int>& of = groups.group_of_voxel;
   std::vector<std::vector<GroupPair>> of_slice(n);
@@ -343,6 +372,31 @@ VoxelGroups join_groups(const HitGrid& grid, VoxelGroups groups, const std::vect
   for (int g = 0; g < n; ++g)
     if (goal[g] >= 0 && goal[g] != g) forest.unite(forest.find(g), forest.find(goal[g]));
   return compact(std::move(groups), forest, target);
+}
+
+VoxelGroups join_details(const HitGrid& grid, VoxelGroups groups, std::int64_t most_voxels,
+                         double least_contact) {
+  const std::vector<Contact> contacts = group_contacts(grid, groups);
+  std::vector<std::int64_t> surface(groups.groups.size(), 0);
+  for (const Contact& c : contacts) {
+    surface[c.a] += c.faces;
+    if (c.b >= 0) surface[c.b] += c.faces;
+  }
+  std::vector<Candidate> candidates;
+  for (const Contact& c : contacts) {
+    if (c.b < 0) continue;
+    const double share =
+        static_cast<double>(c.faces) / static_cast<double>(std::min(surface[c.a], surface[c.b]));
+    if (share >= least_contact) candidates.push_back({share, c.a, c.b, 0});
+  }
+  std::sort(candidates.rbegin(), candidates.rend());
+  GroupForest forest(groups.groups);
+  for (const Candidate& c : candidates) {
+    const int a = forest.find(c.a), b = forest.find(c.b);
+    if (a != b && forest.group(a).voxels + forest.group(b).voxels <= most_voxels)
+      forest.unite(a, b);
+  }
+  return compact(std::move(groups), forest, nullptr);
 }
 
 }  // namespace colod

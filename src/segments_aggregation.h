@@ -72,4 +72,9 @@ VoxelGroups merge_groups(const HitGrid& grid, VoxelGroups groups, MergeRule rule
 VoxelGroups join_groups(const HitGrid& grid, VoxelGroups groups, const std::vector<char>& is_kept,
                         bool is_anywhere, std::vector<int>* target = nullptr);
 
+/// Joins groups of at most `most_voxels` (together, too) that touch each other with at least
+/// `least_contact` of the surface (voxel faces) of one of them; the closest contact first.
+VoxelGroups join_details(const HitGrid& grid, VoxelGroups groups, std::int64_t most_voxels,
+                         double least_contact);
+
 }  // namespace colod
