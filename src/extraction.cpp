@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 #include "error.h"
 #include "extraction_candidates.h"
@@ -21,9 +22,10 @@ namespace {
 
 constexpr double kShortest = 1e-3;  // metres: shorter edges are contracted
 constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};
-constexpr double kEnough = 0.6;      // share of the outlines on the surface that ends the search
-constexpr double kWorthwhile = 0.1;  // share that another trial must add
-constexpr double kLittle = 0.2;
+constexpr double kEnough = 0.6;       // share of the outlines on the surface that ends the search
+constexpr double kWorthwhile = 0.1;   // share that another trial must add
+constexpr double kLittle = 0.2;       // share of the outlines below which a warning is due
+constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
 
 std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& plan) {
   std::vector<char> is_forced(partition.cells.size(), 0);
@@ -69,7 +71,6 @@ std::vector<char> label(const Partition& partition, const CuttingPlan& plan, con
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
                          const RayScene& rays, const ExtractionOptions& options) {
   Extraction result;
-  if (layer_planes.empty()) throw Error(Stage::kProcess, "extraction", "the layer has no plane");
   const CuttingPlan plan = plan_cuts(planes, layer_planes, rays, options);
   const Partition partition =
       partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
@@ -78,16 +79,22 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   std::vector<char> is_inside = label(partition, plan, planes, rays, options, result.warnings);
   if (is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
-  result.mesh = extract_surface(partition, is_inside, options.is_paper);
+  double mended = 0;
+  result.mesh = extract_surface(partition, is_inside, options.is_paper, &mended);
   result.is_manifold = is_closed_manifold(result.mesh.triangles);
+  const double share = mended / std::max(1e-9, signed_volume(result.mesh.mesh()));
+  if (share > kMuchMended)
+    result.warnings.push_back(std::to_string(std::lround(100 * share)) +
+                              " % of the volume was turned round to make the surface a 2-manifold");
   return result;
 }
 
 PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
-                            bool keeps_cavities) {
+                            bool keeps_cavities, double* mended_volume) {
   assert(is_inside.size() == partition.cells.size());
   if (!keeps_cavities) fill_cavities(partition, is_inside);
-  mend_pinches(partition, is_inside);
+  const double mended = mend_pinches(partition, is_inside);
+  if (mended_volume) *mended_volume = mended;
   if (!keep_largest_component(partition, is_inside)) return {};
   if (!keeps_cavities) fill_cavities(partition, is_inside);
   PolygonMesh mesh = build_surface(partition, BoundaryFinder(partition).find(is_inside));

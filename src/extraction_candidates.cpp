@@ -13,7 +13,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
+
+#include "error.h"
 
 namespace colod {
 namespace {
@@ -102,15 +103,22 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
 
 }  // namespace
 
-CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
-                      const RayScene& rays, const ExtractionOptions& options) {
+CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const RayScene& rays,
+                      const ExtractionOptions& options) {
   CuttingPlan plan;
+  std::vector<int> layer_planes = given;
+  std::erase_if(layer_planes, [&](int p) { return planes.planes[p].outline.vertices.empty(); });
+  if (layer_planes.empty())
+    throw Error(Stage::kProcess, "extraction", "the layer has no plane with an outline");
   std::vector<int> every(planes.planes.size());
   std::iota(every.begin(), every.end(), 0);
   Box all = outline_box(planes, every);
   if (!options.is_paper && !planes.box.is_empty())
     all.min.z() = planes.box.min.z();  // walls of airborne clouds end above the ground
   plan.box = all;
+  for (int axis = 0; axis < 3; ++axis)  // one flat region still needs a box
+    if (all.size()[axis] < kThinnest / 10)
+      plan.box.min[axis] -= kThinnest / 10, plan.box.max[axis] += kThinnest / 10;
   if (!options.is_paper) {
     const Vec3 margin = Vec3::Constant(std::max(kThinnest, kBoxGrowth * all.diagonal()));
     plan.box.min -= margin, plan.box.max += margin;

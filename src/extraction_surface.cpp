@@ -259,13 +259,14 @@ void settle_diagonals(std::vector<MergedFacet>& facets, std::vector<Vec3>& point
 
 /// No triangle may turn by more than 60 degrees; the arguments are cross products of its sides.
 bool keeps_direction(const Vec3& before, const Vec3& after) {
-  return before.dot(after) > 0.5 * before.norm() * after.norm() && after.norm() > 0;
+  return before.dot(after) > 0.5 * before.norm() * after.norm();
 }
 
 /// Contracts edges one at a time; knows which triangles use a vertex.
 class Contraction {
  public:
-  explicit Contraction(PolygonMesh& mesh) : mesh_(mesh), triangles_of_(mesh.vertices.size()) {
+  Contraction(PolygonMesh& mesh, double length)
+      : mesh_(mesh), length_(length), triangles_of_(mesh.vertices.size()) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (const int v : mesh.triangles[t]) triangles_of_[v].push_back(static_cast<int>(t));
     is_gone_.assign(mesh.triangles.size(), 0);
@@ -277,12 +278,15 @@ class Contraction {
   bool contract(int from, int to) {
     std::vector<int> shared, moved;
     for (const int t : triangles_of_[from]) (has(t, to) ? shared : moved).push_back(t);
-    if (shared.size() != 2 || link(from, to).size() != 2 || is_tetrahedron(shared)) return false;
+    if (shared.size() != 2 || link(from, to).size() != 2 || is_too_small(shared, from, to))
+      return false;
     for (const int t : moved) {
-      Face f = mesh_.triangles[t];
-      const Vec3 before = cross(f);
-      std::replace(f.begin(), f.end(), from, to);
-      if (!keeps_direction(before, cross(f))) return false;
+      const Face& f = mesh_.triangles[t];
+      Face g = f;
+      std::replace(g.begin(), g.end(), from, to);
+      // What is thinner than the edges contracted has no direction to keep.
+      const bool is_thin = height(f) < length_ && height(g) < length_;
+      if (cross(g).norm() <= 0 || (!is_thin && !keeps_direction(cross(f), cross(g)))) return false;
     }
     for (const int t : shared) {
       is_gone_[t] = 1;
@@ -311,6 +315,12 @@ class Contraction {
     return (mesh_.vertices[f[1]] - mesh_.vertices[f[0]])
         .cross(mesh_.vertices[f[2]] - mesh_.vertices[f[0]]);
   }
+  double height(const Face& f) const {
+    double longest = 0;
+    for (int i = 0; i < 3; ++i)
+      longest = std::max(longest, (mesh_.vertices[f[i]] - mesh_.vertices[f[(i + 1) % 3]]).norm());
+    return longest > 0 ? cross(f).norm() / longest : 0;
+  }
   bool has(int t, int v) const {
     const Face& f = mesh_.triangles[t];
     return std::find(f.begin(), f.end(), v) != f.end();
@@ -329,15 +339,17 @@ class Contraction {
                           std::back_inserter(both));
     return both;
   }
-  /// Contraction would leave two triangles back to back.
-  bool is_tetrahedron(const std::vector<int>& shared) const {
+  /// A vertex would be left with two triangles, back to back.
+  bool is_too_small(const std::vector<int>& shared, int a, int b) const {
+    if (triangles_of_[a].size() + triangles_of_[b].size() < 7) return true;
     for (const int t : shared)
       for (const int v : mesh_.triangles[t])
-        if (triangles_of_[v].size() <= 3) return true;
+        if (v != a && v != b && triangles_of_[v].size() <= 3) return true;
     return false;
   }
 
   PolygonMesh& mesh_;
+  double length_;
   std::vector<std::vector<int>> triangles_of_;
   std::vector<char> is_gone_;
   std::vector<int> target_;
@@ -427,7 +439,7 @@ int contract_short_edges(PolygonMesh& mesh, double length) {
     count = 0;
     if (edges.empty()) break;
     std::sort(edges.begin(), edges.end());
-    Contraction contraction(mesh);
+    Contraction contraction(mesh, length);
     for (const auto& [d, a, b] : edges) {
       // The vertex with fewer planes moves, so that as few facets as possible bend.
       const bool a_moves = contraction.facets_at(a) <= contraction.facets_at(b);

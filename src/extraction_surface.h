@@ -58,8 +58,9 @@ PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
 int contract_short_edges(PolygonMesh& mesh, double length);
 
 /// The surface around the inside cells: cavities filled (unless kept), pinches mended, the largest
-/// component, short edges contracted. Empty when no cell is inside.
+/// component, short edges contracted. Empty when no cell is inside. `mended_volume`, when asked
+/// for: m³ of the cells that were turned round.
 PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
-                            bool keeps_cavities = false);
+                            bool keeps_cavities = false, double* mended_volume = nullptr);
 
 }  // namespace colod
