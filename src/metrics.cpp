@@ -1,6 +1,9 @@
-// Based on: sampled Hausdorff distance as in Cignoni, Rocchini, Scopigno, "Metro: measuring error
+// *Based on:* sampled Hausdorff distance as in Cignoni, Rocchini, Scopigno, "Metro: measuring error
 // on simplified surfaces", 1998, with stratified samples. Validity is in metrics_validity.cpp.
-// Differs: no --rules here; the paper's HD is `relative`. Notation: none.
+//
+// *Differs:* no --rules here; the paper's HD is `relative`.
+//
+// *Notation:* none.
 #include "metrics.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,7 +1,10 @@
-// Based on: the usual definition of a 2-manifold by fans of faces around vertices; self
+// *Based on:* the usual definition of a 2-manifold by fans of faces around vertices; self
 // intersections as in CGAL's Polygon Mesh Processing (boxes, then exact predicates by the number of
 // shared vertices), on a soup instead of a half-edge mesh so that non-manifold input is accepted.
-// Differs: no --rules here. Notation: none.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* none.
 #include <CGAL/Bbox_3.h>
 #include <CGAL/Box_intersection_d/Box_with_handle_d.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

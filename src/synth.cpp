@@ -1,6 +1,9 @@
-// Based on: nothing published; streets of houses whose parts come from one catalogue, so that what
-// repeats is known.
-// Differs: no --rules here. Notation: none.
+// *Based on:* nothing published; streets of houses whose parts come from one catalogue, so that
+// what repeats is known.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* none.
 #include "synth.h"
 
 #include <algorithm>

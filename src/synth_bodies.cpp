@@ -1,7 +1,9 @@
-// Based on: roofs of equal slope over rectangles, written down as polygons.
-// Differs: no --rules here.
-// Notation: L, D: a footprint's length along x and its depth along y; ze: height of the eaves where
-// the walls end; zs, zb: bottom and top of the roof's edge board; zr: ridge.
+// *Based on:* roofs of equal slope over rectangles, written down as polygons.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* L, D: a footprint's length along x and its depth along y; ze: height of the eaves
+// where the walls end; zs, zb: bottom and top of the roof's edge board; zr: ridge.
 #include "synth_bodies.h"
 
 #include <algorithm>

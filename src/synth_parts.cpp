@@ -1,5 +1,8 @@
-// Based on: usual dimensions of dwellings in central Europe.
-// Differs: no --rules here. Notation: u, v: a facet's coordinates, right and up.
+// *Based on:* usual dimensions of dwellings in central Europe.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* u, v: a facet's coordinates, right and up.
 #include "synth_parts.h"
 
 #include <algorithm>

@@ -1,6 +1,9 @@
-// Based on: Euler operators (Mäntylä, "An Introduction to Solid Modeling", 1988), of which only
+// *Based on:* Euler operators (Mäntylä, "An Introduction to Solid Modeling", 1988), of which only
 // gluing a prism to a face is needed; constrained Delaunay triangulation of facets (CGAL).
-// Differs: no --rules here. Notation: none.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* none.
 #include "synth_solid.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>

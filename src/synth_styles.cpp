@@ -1,5 +1,8 @@
-// Based on: kinds of houses common in central European streets.
-// Differs: no --rules here. Notation: none.
+// *Based on:* kinds of houses common in central European streets.
+//
+// *Differs:* no --rules here.
+//
+// *Notation:* none.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
