@@ -1,11 +1,10 @@
-// Based on: DESIGN section 4, "Partition" and "Inside"; candidate planes where data is missing as
-// in Nan & Wonka, "PolyFit", ICCV 2017, and Huang et al., "City3D", Remote Sensing 2022 (walls
-// under roof borders). Differs: paper rules: the layer's planes in the tight box of the model,
-// nothing else. Robust: a base plane at the foot, the sides of the rectangle around the layer
-// (party walls are missing in scans) and walls under roof borders that no plane supports (airborne
-// clouds have no facades). Measured in November 2026 on five open scans: without the rectangle the
-// mean error is six times as large. Notation: an extent is the largest value of direction · x over
-// a set of outlines.
+// Based on: Co-LOD, section 3.3; candidate planes where data is missing as in Nan & Wonka, "PolyFit",
+// ICCV 2017.
+// Differs: paper rules: the layer's planes in the tight box of the model, nothing else. Robust: a
+// base plane at the foot, the sides of the rectangle around the layer (party walls are missing in
+// scans) and walls under roof borders (extraction_walls.cpp). Measured in November 2026 on five open
+// scans: without the rectangle the mean error is six times as large.
+// Notation: an extent is the largest value of direction · x over a set of outlines.
 #include "extraction_candidates.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Based on: the remark that cell complexes are closed but touch along edges and vertices (KSR in
-// CGAL: 27 of 34 closed results are not 2-manifold), measured in November 2026.
+// CGAL: 22 of 34 closed results are not 2-manifold), measured in November 2026.
 // Differs: the paper keeps the largest component and is silent about the rest. Splitting the fans
 // of a pinch leaves copies that touch, which readers that weld equal points join again; here cells
 // are turned round until no pinch is left, under both rules.

@@ -2,8 +2,8 @@
 // Sensing 2022; lines simplified after Douglas & Peucker, 1973.
 // Differs: the paper takes facades for granted. Here (robust rules only) a long border of a roof
 // with no roof beyond it and no wall of the layer under it becomes a vertical candidate plane,
-// which the min-cut may use or leave. Notation: the outer side of a border is the side away from
-// its roof.
+// which the min-cut may use or leave.
+// Notation: the outer side of a border is the side away from its roof.
 #include <algorithm>
 #include <cmath>
 
