@@ -1,9 +1,9 @@
-// Based on: Co-LOD, section 3.3; candidate planes where data is missing as in Nan & Wonka, "PolyFit",
-// ICCV 2017.
+// Based on: Co-LOD, section 3.3; candidate planes where data is missing as in Nan & Wonka,
+// "PolyFit", ICCV 2017.
 // Differs: paper rules: the layer's planes in the tight box of the model, nothing else. Robust: a
 // base plane at the foot, the sides of the rectangle around the layer (party walls are missing in
-// scans) and walls under roof borders (extraction_walls.cpp). Measured in November 2026 on five open
-// scans: without the rectangle the mean error is six times as large.
+// scans) and walls under roof borders (extraction_walls.cpp). Measured in November 2026 on five
+// open scans: without the rectangle the mean error is six times as large.
 // Notation: an extent is the largest value of direction · x over a set of outlines.
 #include "extraction_candidates.h"
 

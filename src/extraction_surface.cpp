@@ -259,14 +259,13 @@ void settle_diagonals(std::vector<MergedFacet>& facets, std::vector<Vec3>& point
 
 /// No triangle may turn by more than 60 degrees; the arguments are cross products of its sides.
 bool keeps_direction(const Vec3& before, const Vec3& after) {
-  return before.dot(after) > 0.5 * before.norm() * after.norm();
+  return after.norm() > 0 && before.dot(after) > 0.5 * before.norm() * after.norm();
 }
 
 /// Contracts edges one at a time; knows which triangles use a vertex.
 class Contraction {
  public:
-  Contraction(PolygonMesh& mesh, double length)
-      : mesh_(mesh), length_(length), triangles_of_(mesh.vertices.size()) {
+  explicit Contraction(PolygonMesh& mesh) : mesh_(mesh), triangles_of_(mesh.vertices.size()) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (const int v : mesh.triangles[t]) triangles_of_[v].push_back(static_cast<int>(t));
     is_gone_.assign(mesh.triangles.size(), 0);
@@ -284,9 +283,7 @@ class Contraction {
       const Face& f = mesh_.triangles[t];
       Face g = f;
       std::replace(g.begin(), g.end(), from, to);
-      // What is thinner than the edges contracted has no direction to keep.
-      const bool is_thin = height(f) < length_ && height(g) < length_;
-      if (cross(g).norm() <= 0 || (!is_thin && !keeps_direction(cross(f), cross(g)))) return false;
+      if (!keeps_direction(cross(f), cross(g))) return false;
     }
     for (const int t : shared) {
       is_gone_[t] = 1;
@@ -314,12 +311,6 @@ class Contraction {
   Vec3 cross(const Face& f) const {
     return (mesh_.vertices[f[1]] - mesh_.vertices[f[0]])
         .cross(mesh_.vertices[f[2]] - mesh_.vertices[f[0]]);
-  }
-  double height(const Face& f) const {
-    double longest = 0;
-    for (int i = 0; i < 3; ++i)
-      longest = std::max(longest, (mesh_.vertices[f[i]] - mesh_.vertices[f[(i + 1) % 3]]).norm());
-    return longest > 0 ? cross(f).norm() / longest : 0;
   }
   bool has(int t, int v) const {
     const Face& f = mesh_.triangles[t];
@@ -349,7 +340,6 @@ class Contraction {
   }
 
   PolygonMesh& mesh_;
-  double length_;
   std::vector<std::vector<int>> triangles_of_;
   std::vector<char> is_gone_;
   std::vector<int> target_;
@@ -439,7 +429,7 @@ int contract_short_edges(PolygonMesh& mesh, double length) {
     count = 0;
     if (edges.empty()) break;
     std::sort(edges.begin(), edges.end());
-    Contraction contraction(mesh, length);
+    Contraction contraction(mesh);
     for (const auto& [d, a, b] : edges) {
       // The vertex with fewer planes moves, so that as few facets as possible bend.
       const bool a_moves = contraction.facets_at(a) <= contraction.facets_at(b);
