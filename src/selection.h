@@ -24,9 +24,10 @@ struct SelectionOptions {
   std::uint64_t seed = 1;
   int exact_segments = 40;  ///< up to this many segments that layer 0 could do without, in all, the
                             ///< whole program goes to lp_solve
-  double completion_share = 0.02;  ///< robust: segments that enclose at least this share of their
-                                   ///< building's voxels join layer 0 after the optimum; > 1: none
-  double gap_warning = 0.05;       ///< a greater gap is warned of
+  double main_share = 0.02;  ///< robust: after the optimum segments that enclose at least this
+                             ///< share of their building's voxels join layer 0, and lesser ones
+                             ///< leave it while f_r > 0.95 holds; 0: the optimum as it is
+  double gap_warning = 0.05;  ///< a greater gap is warned of
 };
 
 enum class SelectionStatus {
@@ -37,11 +38,11 @@ enum class SelectionStatus {
 const char* to_string(SelectionStatus status);
 
 struct Selection {
-  std::vector<std::vector<char>> is_layer0;  ///< [building][segment], with those added
-  int added = 0;  ///< segments that joined after the optimum (SelectionOptions::completion_share)
-  double objective = 0;  ///< E_0 of the result of the optimisation
-  double bound = 0;      ///< proven upper bound on E_0
-  double gap = 0;        ///< (bound − objective) / max(1, |objective|)
+  std::vector<std::vector<char>> is_layer0;  ///< [building][segment], after adding and removing
+  int added = 0, removed = 0;  ///< segments, after the optimum (SelectionOptions::main_share)
+  double objective = 0;        ///< E_0 of the result of the optimisation
+  double bound = 0;            ///< proven upper bound on E_0
+  double gap = 0;              ///< (bound − objective) / max(1, |objective|)
   SelectionStatus status = SelectionStatus::kEmpty;
   double seconds = 0;
   std::vector<std::string> warnings;

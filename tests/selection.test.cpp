@@ -69,7 +69,7 @@ double enumerated_optimum(const std::vector<SelectionBuilding>& buildings,
 
 SelectionOptions rules(bool is_paper, int exact_segments) {
   SelectionOptions o;
-  o.is_paper = is_paper, o.exact_segments = exact_segments, o.completion_share = 2;
+  o.is_paper = is_paper, o.exact_segments = exact_segments, o.main_share = 0;
   return o;
 }
 
@@ -186,6 +186,40 @@ TEST_CASE("robust adds every segment with at least 2 % of the voxels, paper does
       if (c.share >= 0.02) CHECK(all.is_layer0[i][c.segments[0]]);
   CHECK(select_layer0(scene, rules(true, 40)).added == 0);
   CHECK(all.objective == select_layer0(scene, rules(false, 40)).objective);
+}
+
+TEST_CASE("robust: segments of little volume leave, as far as the bound on f_r lets them") {
+  // Areas so small that the optimum alone keeps all five.
+  const std::vector<double> voxels{0.7, 0.2, 0.06, 0.015, 0.015, 0.01};
+  SelectionBuilding house;
+  for (std::size_t s = 0; s < voxels.size(); ++s) {
+    Descriptor d;
+    d.area = s == 0 ? 1000 : 0.01;
+    house.segments.push_back(d);
+    house.coverage.push_back({{static_cast<int>(s)}, voxels[s]});
+  }
+  const Selection alone = select_layer0({house});
+  CHECK(alone.is_layer0[0] == std::vector<char>{1, 1, 1, 0, 0, 0});
+  CHECK(alone.removed == 3);
+  CHECK(select_layer0({house, house}).is_layer0[1] == alone.is_layer0[0]);
+  CHECK(select_layer0({house}, rules(true, 40)).removed == 0);
+
+  house.coverage[0].share = 0.68, house.coverage[5].share = 0.03;  // main; the others fit as before
+  CHECK(select_layer0({house}).is_layer0[0] == std::vector<char>{1, 1, 1, 0, 0, 1});
+}
+
+TEST_CASE("robust: what is small by itself but much together stays where the bound needs it") {
+  SelectionBuilding house;
+  for (int s = 0; s < 101; ++s) {
+    house.segments.emplace_back();
+    house.segments.back().area = 1;
+    house.coverage.push_back({{s}, s == 0 ? 0.5 : 0.005});
+  }
+  const Selection result = select_layer0({house});
+  double kept = 0;
+  for (int s = 0; s < 101; ++s) kept += result.is_layer0[0][s] ? house.coverage[s].share : 0;
+  CHECK(kept > 0.95);
+  CHECK(kept < 0.95 + 0.0051);
 }
 
 TEST_CASE("no building, no segment") {
