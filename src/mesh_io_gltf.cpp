@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "mesh_io_formats.h"
 
@@ -307,6 +308,37 @@ std::string_view json_of(const std::string& path, std::string_view bytes, bool i
   return bytes.substr(sizeof header, header[3]);
 }
 
+/// The file as tinygltf can take it: without the index accessors of Draco primitives. They need no
+/// buffer view, since the Draco stream holds the indices, but tinygltf 2.7 refuses such a file.
+std::string without_draco_indices(const std::string& path, const std::string& bytes,
+                                  std::string_view json, bool is_binary) {
+  nlohmann::json document = nlohmann::json::parse(json, nullptr, false);
+  if (document.is_discarded()) fail(path, "glTF: not JSON");
+  bool is_changed = false;
+  if (document.is_object() && document.contains("meshes") && document["meshes"].is_array())
+    for (auto& mesh : document["meshes"]) {
+      if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array())
+        continue;
+      for (auto& p : mesh["primitives"])
+        if (p.is_object() && p.contains("extensions") && p["extensions"].is_object() &&
+            p["extensions"].contains(kDraco))
+          is_changed |= p.erase("indices") > 0;
+    }
+  if (!is_changed) return bytes;
+  std::string text = document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (!is_binary) return text;
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::size_t rest = std::min(bytes.size(), 20 + json.size());
+  std::string result = bytes.substr(0, 20) + text + bytes.substr(rest);
+  const auto put = [&result](std::size_t at, std::size_t value) {
+    const auto number = static_cast<std::uint32_t>(value);
+    std::memcpy(result.data() + at, &number, sizeof number);
+  };
+  put(8, result.size());
+  put(12, text.size());
+  return result;
+}
+
 bool keep_no_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
                    const unsigned char*, int, void*) {
   return true;
@@ -314,9 +346,11 @@ bool keep_no_image(tinygltf::Image*, const int, std::string*, std::string*, int,
 
 }  // namespace
 
-RawFile read_gltf(const std::string& path, const std::string& bytes) {
-  const bool is_binary = bytes.compare(0, 4, "glTF") == 0;
-  if (is_too_deep(json_of(path, bytes, is_binary))) fail(path, "JSON nested too deeply");
+RawFile read_gltf(const std::string& path, const std::string& file) {
+  const bool is_binary = file.compare(0, 4, "glTF") == 0;
+  const std::string_view json = json_of(path, file, is_binary);
+  if (is_too_deep(json)) fail(path, "JSON nested too deeply");
+  const std::string bytes = without_draco_indices(path, file, json, is_binary);
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_no_image, nullptr);
   tinygltf::Model model;

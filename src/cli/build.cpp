@@ -35,6 +35,7 @@ int build(const BuildArguments& a) {
 
 Run add_build(CLI::App& app) {
   auto a = std::make_shared<BuildArguments>();
+  add_config_option(app);
   app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
   add_output_options(app, a->output);
   add_input_options(app, a->read);

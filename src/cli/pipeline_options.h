@@ -25,7 +25,26 @@ inline void add_run_options(CLI::App& app, RunArguments& a) {
   app.add_flag("--log-json", a.is_json_log, "progress and messages as JSON lines on stderr");
 }
 
-/// --rules, every row of the option table, and --config.
+/// --config FILE (TOML or INI): its values stand for options that the command line leaves out. Call
+/// it before the options it may set are added: options are processed in the order in which they
+/// were added. CLI11's own set_config reads files for the root command only.
+inline void add_config_option(CLI::App& app) {
+  app.add_option_function<std::string>(
+         "--config",
+         [&app](const std::string& path) {
+           for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_file(path)) {
+             CLI::Option* option = app.get_option_no_throw("--" + item.fullname());
+             if (option == nullptr || item.name == "config")
+               throw Error(Stage::kUsage, path, "unknown option '" + item.fullname() + "'");
+             if (option->count() == 0)
+               for (const std::string& value : item.inputs) option->add_result(value);
+           }
+         },
+         "TOML or INI file with any of these options")
+      ->check(CLI::ExistingFile);
+}
+
+/// --rules and every row of the option table.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--rules",
@@ -46,7 +65,6 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
          << info.get(Options{});
     app.add_option_function<double>("--" + info.name, set, help.str());
   }
-  app.set_config("--config", "", "TOML or INI file with any of these options");
 }
 
 }  // namespace colod::cli

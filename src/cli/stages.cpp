@@ -142,6 +142,7 @@ std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
 
 Run add_segment(CLI::App& app) {
   auto a = std::make_shared<StageArguments>();
+  add_config_option(app);
   app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
   app.add_option("-o,--out", a->scene, "scene file to write or go on with")->required();
   add_input_options(app, a->read);
