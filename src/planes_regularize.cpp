@@ -20,6 +20,8 @@ constexpr double kMergeRms = 0.6;             // of the growing distance
 constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet
 constexpr double kMoveRms = 1.0 / 3;          // of the growing distance: what aligning may cost
 constexpr double kOffsetWidth = 0.6;          // of the growing distance
+constexpr double kLeastOffset = 0.05;  // metres: parallel planes closer than this are one …
+constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
 constexpr double kDegree = M_PI / 180;
 
 // --- merging -------------------------------------------------------------------------------------
@@ -263,7 +265,8 @@ void cluster_offsets(std::vector<OffsetCluster>& clusters, double width) {
   }
 }
 
-void align_offsets(std::vector<Region>& regions, double distance) {
+/// `width`: metres, the most that the offsets of one plane may differ.
+void align_offsets(std::vector<Region>& regions, double width) {
   std::map<std::array<double, 3>, std::vector<int>> parallel;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const Vec3 c = canonical(regions[i].normal);
@@ -278,7 +281,7 @@ void align_offsets(std::vector<Region>& regions, double distance) {
     }
     std::stable_sort(clusters.begin(), clusters.end(),
                      [](const OffsetCluster& a, const OffsetCluster& b) { return a.low < b.low; });
-    cluster_offsets(clusters, kOffsetWidth * distance);
+    cluster_offsets(clusters, width);
     for (const OffsetCluster& c : clusters)
       for (const int i : c.members) {
         const double sign = n.dot(regions[i].normal) < 0 ? -1 : 1;
@@ -291,10 +294,15 @@ void align_offsets(std::vector<Region>& regions, double distance) {
 }  // namespace
 
 void regularize(const Items& items, double distance, std::vector<Region>& regions) {
+  Box box;
+  for (const Region& r : regions)
+    for (const int i : r.items) box.extend(items.center[i]);
+  const double diagonal = box.diagonal();
   merge_neighbors(items, distance, true, regions,
                   [&](const Region& a, const Region& b) { return merge_cost(a, b, distance); });
   align_directions(regions, distance);
-  align_offsets(regions, distance);
+  align_offsets(regions, std::max(kOffsetWidth * distance,
+                                  std::min(kLeastOffset, kLeastOffsetShare * diagonal)));
   merge_neighbors(items, distance, false, regions, [](const Region& a, const Region& b) {
     const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
     return a.normal == sign * b.normal && a.offset == sign * b.offset ? 0.0 : 2.0;
