@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
@@ -10,6 +11,7 @@
 #include "../exporters/tiles3d.h"
 #include "../src/parallel.h"
 #include "../src/report.h"
+#include "../src/synth.h"
 #include "meshes.h"
 
 using namespace colod;
@@ -173,4 +175,31 @@ TEST_CASE("an empty scene has a report") {
   const auto json = nlohmann::json::parse(report_json(build({}), Options{}, {}));
   CHECK(json["buildings"].empty());
   CHECK(json["coanalysis"]["segments"] == 0);
+}
+
+TEST_CASE("a procedural neighbourhood, clean and scanned, becomes watertight layers") {
+  for (const bool is_scan : {false, true}) {
+    std::vector<Source> sources;
+    for (SynthBuilding& b : make_neighbourhood({.buildings = 4, .is_scan = is_scan, .density = 15}))
+      sources.push_back(std::move(b.source));
+    const Scene scene = build(std::move(sources));
+    for (const Building& b : scene.buildings) {
+      check_chain(b, 3);
+      CHECK(b.layers[0].validity.volume == Approx(b.layers[2].validity.volume).epsilon(0.2));
+      CHECK(b.layers[2].distances.mean_a_to_b < 0.006 * b.planes.box.diagonal());
+    }
+  }
+}
+
+TEST_CASE("real photogrammetry and airborne points become watertight layers") {
+  const std::string data = COLOD_SOURCE_DIR "/../shared/data/";
+  const std::vector<std::string> files = {data + "mvs/house_a.obj", data + "mvs/arc.off",
+                                          data + "als/block-a/16722.ply"};
+  if (!std::filesystem::exists(files[0])) {
+    WARN("skipped: the shared data are not here");
+    return;
+  }
+  const Scene scene = build(read_sources(files).sources);
+  REQUIRE(scene.buildings.size() == 3);
+  for (const Building& b : scene.buildings) check_chain(b, 3);
 }
