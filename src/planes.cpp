@@ -139,7 +139,7 @@ Planes detect_planes(const Source& source, const PlaneOptions& options) {
   if (result.planes.empty())
     throw Error(Stage::kProcess, source.name, "no plane found: the surface is empty or too small");
   if (!options.is_paper)
-    if (const int flipped = repair_orientation(result.planes); flipped > 0)
+    if (const int flipped = repair_orientation(result.planes, !items.is_mesh()); flipped > 0)
       result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
   sort_planes(result.planes);
   result.box = used_box(items);

@@ -101,7 +101,8 @@ std::vector<Outline> make_outlines(const Items& items, const std::vector<Region>
 double outline_area(const Outline& outline);
 
 // planes_orientation.cpp
-/// Turns planes from whose back clearly more rays escape than from their front; returns how many.
-int repair_orientation(std::vector<Plane>& planes);
+/// Turns planes from whose back clearly more rays escape than from their front; in airborne clouds
+/// what looks away from the sky or towards the roof above it. Returns how many.
+int repair_orientation(std::vector<Plane>& planes, bool is_cloud);
 
 }  // namespace colod::regions
