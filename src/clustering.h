@@ -39,11 +39,19 @@ struct Clustering {
 Clustering cluster_segments(const std::vector<Descriptor>& segments,
                             const ClusteringOptions& options = {});
 
+struct LayerPlanesOptions {
+  bool is_paper = true;  ///< robust: small planes wait for the finest layer
+  int layers = 3;        ///< l_n: the finest layer is l_n − 1
+};
+
 /// The planes of layer k of one building: those of segments on layers ≤ k, and planes of no segment
-/// that touch one of those (outlines nearer than 0.3 m or twice the planes' distance).
-/// `layer_of_segment` per segment of the building. Rising plane indices; those of k are among those
-/// of k + 1.
+/// that touch one of those (outlines nearer than 0.3 m or twice the planes' distance). Robust, and
+/// k not the finest: without the smallest planes of the segments on layer 0, as many as have 3 % of
+/// those segments' area, and without planes of no segment that are no larger than the largest of
+/// them. `layer_of_segment` per segment of the building. Rising plane indices; those of k are among
+/// those of k + 1.
 std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
-                              const std::vector<int>& layer_of_segment, int k);
+                              const std::vector<int>& layer_of_segment, int k,
+                              const LayerPlanesOptions& options = {});
 
 }  // namespace colod

@@ -54,18 +54,19 @@ void find_segments(Building& b, const Options& o) {
 
 /// The order of cutting: planes of coarse layers first, so that a finer partition refines the
 /// coarser one.
-std::vector<int> cutting_order(const Building& b, int k) {
+std::vector<int> cutting_order(const Building& b, int k, const Options& o) {
   std::vector<int> order;
   std::vector<char> is_taken(b.planes.planes.size(), 0);
   for (int layer = 0; layer <= k; ++layer)
-    for (int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, layer))
+    for (int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, layer,
+                                  {.is_paper = is_paper(o), .layers = o.layers}))
       if (!is_taken[plane]) is_taken[plane] = 1, order.push_back(plane);
   return order;
 }
 
 void extract(Building& b, Layer& layer, const RayScene& rays, const Options& o) {
   try {
-    const std::vector<int> planes = cutting_order(b, layer.layer);
+    const std::vector<int> planes = cutting_order(b, layer.layer, o);
     Extraction result =
         extract_layer(b.planes, planes, rays, {.is_paper = is_paper(o), .nr = o.nr});
     layer.mesh = std::move(result.mesh);

@@ -180,6 +180,30 @@ TEST_CASE("touching reaches as far as twice the planes' distance, and through cr
   CHECK(planes.back() == 27);
 }
 
+TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
+  Planes planes;
+  Segments segments;
+  const auto add = [&](double area, int segment) {
+    Plane p;
+    p.area = area;
+    p.outline.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    p.outline.triangles = {{0, 1, 2}};
+    if (segment >= 0) segments.segments[segment].planes.push_back(int(planes.planes.size()));
+    planes.planes.push_back(p);
+  };
+  segments.segments.resize(2);
+  for (const double area : {60.0, 37.0, 2.0, 1.0}) add(area, 0);
+  for (const double area : {1.5, 0.5}) add(area, 1);
+  for (const double area : {2.5, 1.9}) add(area, -1);
+  const std::vector<int> layer{0, 1};
+  const auto at = [&](int k) { return layer_planes(planes, segments, layer, k, {false, 3}); };
+  CHECK(at(0) == std::vector<int>{0, 1, 6});
+  CHECK(at(1) == std::vector<int>{0, 1, 4, 5, 6});
+  CHECK(at(2).size() == 8);
+  CHECK(layer_planes(planes, segments, layer, 0).size() == 6);  // the paper's
+  CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8);
+}
+
 TEST_CASE("the planes of a layer are among those of the next") {
   std::mt19937_64 random(3);
   for (int trial = 0; trial < 10; ++trial) {
@@ -198,9 +222,10 @@ TEST_CASE("the planes of a layer are among those of the next") {
         layer.push_back(static_cast<int>(random() % 3));
       }
     }
-    for (int k = 0; k < 3; ++k) {
-      const auto a = layer_planes(planes, segments, layer, k);
-      const auto b = layer_planes(planes, segments, layer, k + 1);
+    for (int k = 0; k < 6; ++k) {
+      const LayerPlanesOptions options{k < 3, 4};
+      const auto a = layer_planes(planes, segments, layer, k % 3, options);
+      const auto b = layer_planes(planes, segments, layer, k % 3 + 1, options);
       CHECK(std::is_sorted(a.begin(), a.end()));
       CHECK(std::includes(b.begin(), b.end(), a.begin(), a.end()));
     }
