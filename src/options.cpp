@@ -26,7 +26,8 @@ const std::vector<OptionInfo>& option_table() {
   static const std::vector<OptionInfo> table = {
       row<&Options::layers>("layers", "", 1, 8,
                             "layers a building gets (l_n); layer 0 is the coarsest"),
-      row<&Options::ns>("ns", "", 8, 1000, "voxels along each side of a building's box (n_s)"),
+      row<&Options::ns>("ns", "", 8, 1000,
+                        "voxels along each side of a building's box (n_s); 150 with --rules paper"),
       row<&Options::nr>("nr", "", 4, 1000, "rays a voxel (n_r)"),
       row<&Options::alcove_area>("alcove-area", "m2", 0, 1e9,
                                  "planes smaller than this may form alcoves (A_eps)"),
@@ -42,6 +43,13 @@ const std::vector<OptionInfo>& option_table() {
       row<&Options::seed>("seed", "", 0, 9007199254740992.0, "seed of everything drawn at random"),
   };
   return table;
+}
+
+Options default_options(Rules rules) {
+  Options options;
+  options.rules = rules;
+  if (rules == Rules::kPaper) options.ns = 150;
+  return options;
 }
 
 void validate(const Options& options) {

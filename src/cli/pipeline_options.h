@@ -44,12 +44,13 @@ inline void add_config_option(CLI::App& app) {
       ->check(CLI::ExistingFile);
 }
 
-/// --rules and every row of the option table.
+/// --rules and every row of the option table; --rules comes first, since the others' defaults hang
+/// on it.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--rules",
          [&options](const std::string& v) {
-           options.rules = v == "paper" ? Rules::kPaper : Rules::kRobust;
+           options = default_options(v == "paper" ? Rules::kPaper : Rules::kRobust);
          },
          "robust (default) or the paper's letter")
       ->check(CLI::IsMember({"robust", "paper"}));
