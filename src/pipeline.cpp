@@ -1,6 +1,7 @@
-// Differs: a building that fails keeps its place with the reason, and a coarser layer that came out
-// richer than the finer one takes the finer one's mesh, so that detail never decreases along a
-// chain.
+// Differs: a building that fails keeps its place with the reason. A coarser layer that came out
+// richer than the next finer one takes its mesh, so that detail never decreases along a chain;
+// under robust rules also one whose volume is off by more than a fifth: it has lost part of the
+// building.
 
 #include "pipeline.h"
 
@@ -31,6 +32,8 @@ class Stopwatch {
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
+
+constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -82,13 +85,25 @@ bool is_richer(const PolygonMesh& a, const PolygonMesh& b) {
          a.facets.size() > b.facets.size();
 }
 
-void keep_detail_rising(Building& b) {
+/// Why a coarser layer cannot stand before a finer one; empty: it can.
+std::string misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volume_checked) {
+  if (is_richer(coarse, fine)) return "is richer than";
+  const double volume = signed_volume(fine.mesh());
+  const double change = std::abs(signed_volume(coarse.mesh()) - volume);
+  return is_volume_checked && change > kVolumeChange * volume ? "has another volume than" : "";
+}
+
+/// Detail rises along the chain, and (robust) all layers enclose about the same building.
+void keep_chain_sound(Building& b, const Options& o) {
   for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
     Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
-    if (!coarse.failure.empty() || !fine.failure.empty() || !is_richer(coarse.mesh, fine.mesh))
-      continue;
-    b.warnings.push_back("layer " + std::to_string(k) + " was richer than layer " +
-                         std::to_string(k + 1) + " and takes its mesh");
+    if (!coarse.failure.empty() || !fine.failure.empty()) continue;
+    std::string why = misfit(coarse.mesh, fine.mesh, !is_paper(o));
+    if (why.empty() && b.layers.back().failure.empty())  // many small changes are a large one
+      why = misfit(coarse.mesh, b.layers.back().mesh, !is_paper(o));
+    if (why.empty()) continue;
+    b.warnings.push_back("layer " + std::to_string(k) + " " + why +
+                         " the next finer one and takes its mesh");
     coarse.mesh = fine.mesh;
   }
 }
@@ -171,7 +186,7 @@ void mesh_building(Building& b, const Options& options) {
       extract(b, layer, rays, options);
       b.layers.push_back(std::move(layer));
     }
-    keep_detail_rising(b);
+    keep_chain_sound(b, options);
     Stopwatch watch(b.timings.measure);
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(b, layer);
