@@ -44,6 +44,26 @@ Box used_box(const Items& items) {
   return box;
 }
 
+/// The foot of a cloud: a few points low on its walls are too few for a component, but they say
+/// where the walls end. Single points below are noise.
+void lower_to_foot(const Items& items, Box& box) {
+  constexpr double kBeside = 1, kTogether = 0.5;  // metres
+  constexpr std::size_t kLeastPoints = 4;
+  std::vector<double> heights;
+  for (int i = 0; i < items.size(); ++i) {
+    const Vec3& p = items.source->cloud.points[i];
+    const Vec3 beyond = (box.min - p).cwiseMax(p - box.max);  // > 0: out of the box
+    if (p.allFinite() && p.z() < box.min.z() && beyond.head<2>().maxCoeff() < kBeside)
+      heights.push_back(p.z());
+  }
+  std::sort(heights.begin(), heights.end());
+  for (std::size_t k = 0; k + kLeastPoints <= heights.size(); ++k)
+    if (heights[k + kLeastPoints - 1] - heights[k] < kTogether) {
+      box.min.z() = heights[k];
+      return;
+    }
+}
+
 double growing_distance(double noise, const Box& box, const PlaneOptions& options) {
   const double most = std::min({kMostDistance, options.distance, 0.02 * box.diagonal()});
   return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
@@ -143,6 +163,7 @@ Planes detect_planes(const Source& source, const PlaneOptions& options) {
       result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
   sort_planes(result.planes);
   result.box = used_box(items);
+  if (!options.is_paper && !items.is_mesh()) lower_to_foot(items, result.box);
   result.plane_of_item.assign(items.size(), -1);
   for (std::size_t p = 0; p < result.planes.size(); ++p)
     for (const int i : result.planes[p].items) result.plane_of_item[i] = static_cast<int>(p);

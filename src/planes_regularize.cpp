@@ -4,6 +4,7 @@
 // Notation: n normal, d offset; family = wall directions that are parallel or orthogonal; azimuth =
 // angle of a horizontal direction from x; tilt = angle of a normal from z. "Canonical" = the one of
 // ±(n, d) whose first non-zero of (z, x, y) is positive.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +24,9 @@ constexpr double kOffsetWidth = 0.6;          // of the growing distance
 constexpr double kLeastOffset = 0.05;  // metres: parallel planes closer than this are one …
 constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
 constexpr double kDegree = M_PI / 180;
+constexpr double kUpright = 0.17;           // sine of what may be turned level or upright
+constexpr double kMostTurn = 10 * kDegree;  // of a narrow strip, which hardly knows its direction
+constexpr double kNarrow = 0.3;  // metres: standard deviation across a strip about a metre wide
 
 // --- merging -------------------------------------------------------------------------------------
 
@@ -103,11 +107,16 @@ void merge_neighbors(const Items& items, double gap, bool is_refit, std::vector<
 /// the region's own surface little enough.
 bool try_direction(Region& r, Vec3 n, double distance) {
   if (n.dot(r.normal) < 0) n = -n;
-  const double most = (r.area < 1 ? 5 : 3) * kDegree;
-  if (n.dot(r.normal) < std::cos(most)) return false;
+  const double cosine = n.dot(r.normal);
+  if (cosine < std::cos(kMostTurn)) return false;
+  const Eigen::Matrix3d covariance = r.moments.covariance();
+  if (cosine < std::cos((r.area < 1 ? 5 : 3) * kDegree)) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+    if (solver.eigenvalues()[1] > kNarrow * kNarrow) return false;
+  }
   const Vec3 fitted = r.moments.fit(r.normal);
   const Vec3 turn = n - fitted;
-  const double moved2 = turn.dot(r.moments.covariance() * turn);
+  const double moved2 = turn.dot(covariance * turn);
   if (moved2 > std::pow(kMoveRms * distance, 2)) return false;
   r.normal = n;
   r.offset = n.dot(r.moments.mean());
@@ -147,9 +156,9 @@ std::vector<Kind> snap_to_upright(std::vector<Region>& regions, double distance)
   for (Region& r : regions) {
     const double h = std::hypot(r.normal.x(), r.normal.y());
     Kind kind = Kind::kSlope;
-    if (h < 0.1 && try_direction(r, Vec3::UnitZ(), distance))
+    if (h < kUpright && try_direction(r, Vec3::UnitZ(), distance))
       kind = Kind::kLevel;
-    else if (std::abs(r.normal.z()) < 0.1 &&
+    else if (std::abs(r.normal.z()) < kUpright &&
              try_direction(r, Vec3(r.normal.x() / h, r.normal.y() / h, 0), distance))
       kind = Kind::kWall;
     kinds.push_back(kind);
