@@ -33,6 +33,14 @@ void check_relative(const fs::path& path) {
 
 }  // namespace
 
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail(folder, "the folder cannot be made: " + error.message());
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    fail(folder, std::string("cannot be written to: ") + std::strerror(errno));
+}
+
 void write_file(const std::string& folder, const Encoded& file) {
   check_relative(file.path);
   const fs::path target = fs::path(folder) / file.path;

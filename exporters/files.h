@@ -6,6 +6,10 @@
 
 namespace colod {
 
+/// Makes `folder` unless it is there, and makes sure that files can be written to it. Throws
+/// Error{kOutput}.
+void make_folder(const std::string& folder);
+
 /// Writes `file` below `folder`, making folders as needed. Throws Error{kOutput} naming the path
 /// and the cause.
 void write_file(const std::string& folder, const Encoded& file);

@@ -11,6 +11,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <type_traits>
 
 #include "error.h"
@@ -148,6 +149,41 @@ std::vector<std::vector<int>> unflatten(const std::vector<int>& flat, const std:
   return rings;
 }
 
+/// What the other rooms take for granted: indices into arrays of `size`, none negative.
+void check_range(std::span<const int> indices, std::size_t size, const std::string& path) {
+  for (const int i : indices)
+    if (i < 0 || static_cast<std::size_t>(i) >= size)
+      throw Error(Stage::kInput, path, "damaged: an index points nowhere");
+}
+
+void check_range(const std::vector<Face>& faces, std::size_t size, const std::string& path) {
+  for (const Face& f : faces) check_range(std::span<const int>(f), size, path);
+}
+
+void check_range(const std::vector<std::vector<int>>& rings, std::size_t size,
+                 const std::string& path) {
+  for (const std::vector<int>& ring : rings) check_range(ring, size, path);
+}
+
+void check_range(const PolygonMesh& mesh, const std::string& path) {
+  for (const PolygonMesh::Facet& f : mesh.facets) check_range(f.rings, mesh.vertices.size(), path);
+  check_range(mesh.triangles, mesh.vertices.size(), path);
+  check_range(mesh.facet_of_triangle, mesh.facets.size(), path);
+  if (mesh.facet_of_triangle.size() != mesh.triangles.size())
+    throw Error(Stage::kInput, path, "damaged: a mesh has lost facets of its triangles");
+}
+
+/// Reads JSON that `parse` takes apart; what it does not hold, or holds in another type, is damage.
+template <typename Parse>
+void read_json(const std::string& text, const std::string& path, const char* what,
+               const Parse& parse) {
+  try {
+    parse(Json::parse(text));
+  } catch (const Json::exception&) {
+    throw Error(Stage::kInput, path, std::string("damaged: its ") + what + " are unreadable");
+  }
+}
+
 /// A facet without its rings, as stored.
 struct FacetRecord {
   Vec3 normal;
@@ -254,22 +290,32 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 
 void Store::put_options(const Options& options) {
-  impl_->write("INSERT OR REPLACE INTO meta VALUES('options', ?1)")
-      .bind(options_json(options).dump())
-      .run();
+  const std::string text = options_json(options).dump();
+  Statement old = impl_->read("SELECT value FROM meta WHERE key = 'options'");
+  const bool is_there = old.step();
+  if (is_there && old.text() == text) return;
+  impl_->transaction([&] {
+    if (is_there && this->options().layers != options.layers)
+      impl_->execute("DELETE FROM layer; UPDATE segment SET layer = NULL", Stage::kOutput);
+    impl_->execute("DELETE FROM meta WHERE key = 'coanalysis'", Stage::kOutput);
+    impl_->write("INSERT OR REPLACE INTO meta VALUES('options', ?1)").bind(text).run();
+  });
 }
 
 Options Store::options() const {
   Statement s = impl_->read("SELECT value FROM meta WHERE key = 'options'");
   if (!s.step())
     throw Error(Stage::kInput, impl_->path, "holds no options: colod segment has not finished");
-  const Json json = Json::parse(s.text(), nullptr, false);
-  if (!json.is_object())
-    throw Error(Stage::kInput, impl_->path, "damaged: its options are unreadable");
   Options options;
-  options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
-  for (const OptionInfo& info : option_table())
-    info.set(options, json.value(info.name, info.get(options)));
+  read_json(s.text(), impl_->path, "options", [&](const Json& json) {
+    options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
+    for (const OptionInfo& info : option_table()) {
+      const double value = json.value(info.name, info.get(options));
+      if (!(value >= info.min && value <= info.max))
+        throw Error(Stage::kInput, impl_->path, "damaged: its option " + info.name + " is wild");
+      info.set(options, value);
+    }
+  });
   return options;
 }
 
@@ -302,7 +348,7 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(b.planes.plane_of_item)
       .bind(static_cast<std::int64_t>(b.segments.rays))
       .bind(b.failure)
-      .bind(Json(own_warnings).dump())
+      .bind(Json(own_warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
       .run();
 }
 
@@ -419,7 +465,7 @@ void Store::put_meshes(const Building& b) {
     for (const Layer& layer : b.layers) impl_->put_layer(b, layer);
     impl_->write("UPDATE building SET failure = ?1, warnings = ?2 WHERE name = ?3")
         .bind(b.failure)
-        .bind(Json(b.warnings).dump())
+        .bind(Json(b.warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
         .bind(b.source.name)
         .run();
   });
@@ -450,8 +496,11 @@ void Store::Impl::get_building(Building& b) const {
   b.planes.plane_of_item = s.array<int>();
   b.segments.rays = static_cast<std::uint64_t>(s.integer());
   b.failure = s.text();
-  const Json warnings = Json::parse(s.text(), nullptr, false);
-  if (warnings.is_array()) b.warnings = warnings.get<std::vector<std::string>>();
+  read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
+  check_range(b.source.mesh.faces, b.source.mesh.vertices.size(), path);
+  if (!b.source.cloud.normals.empty() &&
+      b.source.cloud.normals.size() != b.source.cloud.points.size())
+    throw Error(Stage::kInput, path, "damaged: a cloud has lost normals");
 }
 
 void Store::Impl::get_planes(Building& b) const {
@@ -460,6 +509,8 @@ void Store::Impl::get_planes(Building& b) const {
       "outline_vertices,"
       " outline_rings, outline_triangles FROM plane WHERE building = ?1 ORDER BY id");
   s.bind(b.source.name);
+  const std::size_t items =
+      b.source.is_mesh() ? b.source.mesh.faces.size() : b.source.cloud.points.size();
   while (s.step()) {
     const bool is_free = s.is_null();
     const auto segment = static_cast<int>(s.integer());
@@ -473,6 +524,9 @@ void Store::Impl::get_planes(Building& b) const {
     p.outline.vertices = s.array<Vec3>();
     p.outline.rings = unflatten(s.array<int>(), path);
     p.outline.triangles = s.array<Face>();
+    check_range(p.items, items, path);
+    check_range(p.outline.rings, p.outline.vertices.size(), path);
+    check_range(p.outline.triangles, p.outline.vertices.size(), path);
     b.planes.planes.push_back(std::move(p));
   }
 }
@@ -508,6 +562,7 @@ void Store::Impl::get_segments(Building& b) const {
   while (c.step()) {
     Coverage coverage;
     coverage.segments = c.array<int>();
+    check_range(coverage.segments, b.segments.segments.size(), path);
     coverage.share = c.real();
     b.segments.coverage.push_back(std::move(coverage));
   }
@@ -542,6 +597,7 @@ void Store::Impl::get_layers(Building& b) const {
     }
     layer.mesh.triangles = s.array<Face>();
     layer.mesh.facet_of_triangle = s.array<int>();
+    check_range(layer.mesh, path);
     b.layers.push_back(std::move(layer));
   }
 }
@@ -573,15 +629,14 @@ void Store::get_coanalysis(Scene& scene) const {
   Statement s = impl_->read("SELECT value FROM meta WHERE key = 'coanalysis'");
   if (!s.step())
     throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
-  const Json json = Json::parse(s.text(), nullptr, false);
-  if (!json.is_object())
-    throw Error(Stage::kInput, impl_->path, "damaged: its analysis is unreadable");
-  scene.selection.objective = json.value("objective", 0.0);
-  scene.selection.bound = json.value("bound", 0.0);
-  scene.selection.gap = json.value("gap", 0.0);
-  scene.selection.status = static_cast<SelectionStatus>(json.value("status", 0));
-  scene.coanalysis_seconds = json.value("seconds", 0.0);
-  scene.selection.warnings = json.value("warnings", std::vector<std::string>{});
+  read_json(s.text(), impl_->path, "figures of the analysis", [&](const Json& json) {
+    scene.selection.objective = json.value("objective", 0.0);
+    scene.selection.bound = json.value("bound", 0.0);
+    scene.selection.gap = json.value("gap", 0.0);
+    scene.selection.status = static_cast<SelectionStatus>(json.value("status", 0));
+    scene.coanalysis_seconds = json.value("seconds", 0.0);
+    scene.selection.warnings = json.value("warnings", std::vector<std::string>{});
+  });
 }
 
 std::string segments_key(const Source& source, const Options& options) {

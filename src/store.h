@@ -23,6 +23,7 @@ class Store {
   ~Store();
   Store(Store&&) noexcept;
 
+  /// Other options outdate the analysis, another number of layers the meshes too: they go away.
   void put_options(const Options& options);
   Options options() const;
 

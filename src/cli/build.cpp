@@ -1,6 +1,7 @@
 #include <chrono>
 #include <memory>
 
+#include "../../exporters/files.h"
 #include "../parallel.h"
 #include "../pipeline.h"
 #include "cli.h"
@@ -24,8 +25,10 @@ int build(const BuildArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  const Scene scene = build_scene(read_sources(a.inputs, a.read), a.options,
-                                  [&](auto&&... args) { log.progress(args...); });
+  ReadResult input = read_sources(a.inputs, a.read);
+  make_folder(a.output.out);  // fails now rather than after all the work
+  const Scene scene =
+      build_scene(std::move(input), a.options, [&](auto&&... args) { log.progress(args...); });
   export_scene(scene, a.output);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), a.output, log);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <mutex>
+#include <set>
 
+#include "../../exporters/files.h"
 #include "../error.h"
 #include "../parallel.h"
 #include "../pipeline.h"
@@ -67,13 +70,39 @@ Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of) 
       scene.buildings.push_back(stores[f].building(name));
       file_of.push_back(f);
     }
+  if (scene.buildings.empty())
+    throw Error(Stage::kInput, "scene", "holds no building: run colod segment first");
   return scene;
 }
 
 std::vector<Store> open_all(const std::vector<std::string>& files) {
   std::vector<Store> stores;
-  for (const std::string& file : files) stores.emplace_back(file, false);
+  std::error_code error;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      if (std::filesystem::equivalent(files[i], files[j], error))
+        throw Error(Stage::kInput, files[i], "is named twice");
+    stores.emplace_back(files[i], false);
+  }
   return stores;
+}
+
+/// Layers that are missing, or older than the segments, would be nonsense.
+void check_analysed(const Store& store, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (!store.has_layers_of_segments(name))
+      throw Error(Stage::kInput, name, "is new since colod analyze: run it again first");
+}
+
+/// What stands in one folder needs names of its own.
+void check_exportable(const Scene& scene) {
+  std::set<std::string> names;
+  for (const Building& b : scene.buildings) {
+    if (!names.insert(b.source.name).second)
+      throw Error(Stage::kInput, b.source.name, "stands in two of the scene files");
+    if (b.failure.empty() && b.layers.empty())
+      throw Error(Stage::kInput, b.source.name, "has no meshes yet: run colod mesh first");
+  }
 }
 
 int analyze(const StageArguments& a) {
@@ -96,6 +125,7 @@ int mesh(const StageArguments& a) {
     const Options options = store.options();
     store.get_coanalysis(problems);
     const std::vector<std::string> names = store.names();
+    check_analysed(store, names);
     std::mutex mutex;
     int done = 0;
     parallel_for(names.size(), [&](std::size_t i) {
@@ -123,9 +153,8 @@ int export_files(const StageArguments& a) {
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   stores.front().get_coanalysis(scene);
-  for (const Building& b : scene.buildings)
-    if (b.failure.empty() && b.layers.empty())
-      throw Error(Stage::kInput, b.source.name, "has no meshes yet: run colod mesh first");
+  check_exportable(scene);
+  make_folder(a.output.out);
   export_scene(scene, a.output);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, stores.front().options(), seconds.count(), a.output, a.run.log());
