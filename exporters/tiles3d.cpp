@@ -80,11 +80,17 @@ void put(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+/// File names may be in any encoding, strings of a property table only in UTF-8.
+std::string as_utf8(const std::string& text) {
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))
+      .get<std::string>();
+}
+
 Json string_column(GltfDocument& document, const std::vector<std::string>& values) {
   std::string bytes, offsets;
   for (const std::string& value : values) {
     put(offsets, static_cast<std::uint32_t>(bytes.size()));
-    bytes += value;
+    bytes += as_utf8(value);
   }
   put(offsets, static_cast<std::uint32_t>(bytes.size()));
   if (bytes.empty()) bytes = std::string(1, '\0');  // a buffer view must not be empty
@@ -289,7 +295,8 @@ std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings
       {"errorScale", options.target_sse / options.pixel_error}};
   tileset["geometricError"] = std::max(16 * root.error, root.box.diagonal());  // drawn from afar
   tileset["root"] = std::move(root.json);
-  std::vector<Encoded> files = {{"tileset.json", tileset.dump(1) + "\n"}};
+  std::vector<Encoded> files = {
+      {"tileset.json", tileset.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"}};
   files.insert(files.end(), std::make_move_iterator(scene.files.begin()),
                std::make_move_iterator(scene.files.end()));
   return files;

@@ -112,7 +112,7 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   json["failures"] = Json::array();
   for (const ReadFailure& f : scene.failures)
     json["failures"].push_back({{"source", f.path}, {"message", f.message}});
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace colod

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "../error.h"
 #include "../metrics.h"
@@ -42,24 +44,32 @@ Json mesh_json(const Source& s) {
           {"degenerate_faces", v.degenerate_faces}};
 }
 
-Json tile_json(const nlohmann::json& tile, int depth, Json& totals) {
-  totals["tiles"] = totals["tiles"].get<int>() + 1;
-  totals["depth"] = std::max(totals["depth"].get<int>(), depth);
-  if (tile.contains("content")) totals["contents"] = totals["contents"].get<int>() + 1;
-  for (const auto& child : tile.value("children", nlohmann::json::array()))
-    tile_json(child, depth + 1, totals);
-  return totals;
+/// Tiles below and with `root`; a tileset of any shape or depth.
+Json count_tiles(const nlohmann::json& root) {
+  int tiles = 0, contents = 0, deepest = 0;
+  std::vector<std::pair<const nlohmann::json*, int>> open = {{&root, 1}};
+  while (!open.empty()) {
+    const auto [tile, depth] = open.back();
+    open.pop_back();
+    ++tiles;
+    contents += tile->contains("content");
+    deepest = std::max(deepest, depth);
+    if (const auto children = tile->find("children"); children != tile->end())
+      for (const nlohmann::json& child : *children) open.emplace_back(&child, depth + 1);
+  }
+  return {
+      {"type", "3D Tiles tileset"}, {"tiles", tiles}, {"contents", contents}, {"depth", deepest}};
 }
 
 Json tileset_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   nlohmann::json tileset = nlohmann::json::parse(in, nullptr, false);
-  if (tileset.is_discarded() || !tileset.contains("root"))
+  if (!tileset.is_object() || !tileset.contains("root") || !tileset["root"].is_object())
     throw Error(Stage::kInput, path, "not a tileset: no root tile");
-  Json totals{{"type", "3D Tiles tileset"}, {"tiles", 0}, {"contents", 0}, {"depth", 0}};
-  totals["asset"] = tileset["asset"];
-  totals["geometricError"] = tileset.value("geometricError", 0.0);
-  return tile_json(tileset["root"], 1, totals);
+  Json json = count_tiles(tileset["root"]);
+  json["asset"] = tileset["asset"];
+  json["geometricError"] = tileset["geometricError"];
+  return json;
 }
 
 int info(const InfoArguments& a) {
@@ -80,7 +90,7 @@ int info(const InfoArguments& a) {
     json["warnings"] = source.warnings;
   }
   json["file"] = file;
-  std::printf("%s\n", json.dump(2).c_str());
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   return 0;
 }
 

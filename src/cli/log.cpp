@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,12 @@ void write_line(const nlohmann::ordered_json& line) {
 }
 
 }  // namespace
+
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+  return text;
+}
 
 Log::Log(bool is_quiet, bool is_json)
     : is_quiet_(is_quiet), is_json_(is_json), is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -38,7 +45,7 @@ void Log::message(Level level, const std::string& text) const {
   if (is_quiet_ && level != Level::kError) return;
   if (is_terminal_ && !is_quiet_) std::fprintf(stderr, "\r\033[K");
   const std::string prefix = level == Level::kInfo ? "" : std::string(name(level)) + ": ";
-  std::fprintf(stderr, "colod: %s%s\n", prefix.c_str(), text.c_str());
+  std::fprintf(stderr, "colod: %s%s\n", prefix.c_str(), one_line(text).c_str());
 }
 
 }  // namespace colod::cli

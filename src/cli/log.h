@@ -7,6 +7,9 @@ namespace colod::cli {
 
 enum class Level { kInfo, kWarning, kError };
 
+/// File names and damaged files hold anything; a message is one line without control characters.
+std::string one_line(std::string text);
+
 class Log {
  public:
   Log(bool is_quiet, bool is_json);

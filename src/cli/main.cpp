@@ -5,6 +5,7 @@
 
 #include "../error.h"
 #include "cli.h"
+#include "log.h"
 
 namespace {
 
@@ -47,10 +48,10 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const colod::Error& e) {
-    std::fprintf(stderr, "colod: %s\n", e.what());
+    std::fprintf(stderr, "colod: %s\n", colod::cli::one_line(e.what()).c_str());
     return static_cast<int>(e.stage);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "colod: %s\n", e.what());
+    std::fprintf(stderr, "colod: %s\n", colod::cli::one_line(e.what()).c_str());
     return static_cast<int>(colod::Stage::kProcess);
   }
 }
