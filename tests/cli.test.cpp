@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "meshes.h"
@@ -60,6 +61,16 @@ std::string off(const Mesh& m) {
     text += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) +
             "\n";
   return text;
+}
+
+/// Every file of two folders alike, but for the report's seconds.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::map<std::string, std::string> files[2];
+  for (const int side : {0, 1})
+    for (const auto& entry : fs::recursive_directory_iterator(side == 0 ? a : b))
+      if (entry.is_regular_file() && entry.path().filename() != "report.json")
+        files[side][fs::relative(entry.path(), side == 0 ? a : b).string()] = slurp(entry.path());
+  return !files[0].empty() && files[0] == files[1];
 }
 
 const std::string kSmall = " --ns 24 --nr 40 --quiet ";
@@ -158,4 +169,84 @@ TEST_CASE("info tells what a mesh and a folder of ours hold") {
   REQUIRE(f.colod("build " + house + kSmall + " -o " + (f / "out").string()).exit_code == 0);
   CHECK(nlohmann::json::parse(f.colod("info " + (f / "out").string()).out)["contents"] >= 3);
   CHECK(f.colod("info " + (f / "out/buildings/house.glb").string()).exit_code == 0);
+}
+
+TEST_CASE("threads and stages do not change a byte, and a stage goes on where it was killed") {
+  Folder f;
+  for (const int i : {0, 1, 2})
+    f.write("in/h" + std::to_string(i) + ".off", off(test::gable_house(10 + 2 * i, 9, 6, 3 + i)));
+  const std::string in = (f / "in").string(), scene = (f / "s.colod").string();
+  const std::string small = " --ns 12 --nr 16 --quiet ";
+  REQUIRE(f.colod("build " + in + small + "--threads 1 -o " + (f / "one").string()).exit_code == 0);
+  REQUIRE(f.colod("build " + in + small + "--threads 2 -o " + (f / "two").string()).exit_code == 0);
+  CHECK(is_same(f / "one", f / "two"));
+  REQUIRE(f.colod("segment " + in + small + "-o " + scene).exit_code == 0);
+  REQUIRE(f.colod("analyze " + scene).exit_code == 0);
+  std::system(("timeout -s KILL 0.3 " COLOD_BINARY " mesh --threads 1 " + scene + " 2>&1 | cat >/dev/null").c_str());
+  REQUIRE(f.colod("mesh --quiet " + scene).exit_code == 0);
+  REQUIRE(f.colod("export --quiet " + scene + " -o " + (f / "stages").string()).exit_code == 0);
+  CHECK(is_same(f / "one", f / "stages"));
+}
+
+TEST_CASE("stages refuse what is newer than their input, and what is damaged") {
+  Folder f;
+  const std::string house = f.write("a.off", off(test::gable_house(12, 9, 6, 4)));
+  const std::string scene = (f / "s.colod").string(), out = " -o " + (f / "out").string();
+  const std::string segment = "segment --ns 12 --nr 16 --quiet -o " + scene + " ";
+  REQUIRE(f.colod(segment + house).exit_code == 0);
+  CHECK(f.colod("mesh " + scene).exit_code == 3);
+  REQUIRE(f.colod("analyze " + scene).exit_code == 0);
+  CHECK(f.colod("export " + scene + out).exit_code == 3);
+  f.write("a.off", off(test::gable_house(12, 9, 7, 4)));
+  REQUIRE(f.colod(segment + house).exit_code == 0);
+  CHECK(f.colod("mesh " + scene).exit_code == 3);
+  CHECK(f.colod("analyze " + scene + " " + scene).exit_code == 3);
+  REQUIRE(f.colod(segment + house + " --layers 2").exit_code == 0);
+  CHECK(f.colod("mesh " + scene).exit_code == 3);
+  CHECK(f.colod("analyze " + house).exit_code == 3);
+  std::string bytes = slurp(scene);
+  CHECK(f.colod("analyze " + f.write("cut.colod", bytes.substr(0, bytes.size() / 2))).exit_code ==
+        3);
+}
+
+TEST_CASE("odd names, odd bytes and an output that cannot be: no half of anything") {
+  Folder f;
+  const std::string house = off(test::gable_house(12, 9, 6, 4));
+  f.write("in/with blank \xC3\xBC.off", house);
+  f.write("in/latin \xFC.off", house);
+  f.write("in/" + std::string(240, 'x') + ".off", house);
+  f.write("in/bad \xFC\n.off", "OFF\n\xFF\x01 3 0\n");
+  const std::string in = " '" + (f / "in").string() + "' ", small = " --ns 12 --nr 16 --quiet ";
+  const Result r = f.colod("build" + in + small + "-o " + (f / "out").string());
+  CHECK(r.exit_code == 1);
+  CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+  CHECK(nlohmann::json::parse(slurp(f / "out/report.json"))["buildings"].size() == 3);
+  for (const auto& entry : fs::recursive_directory_iterator(f / "out"))
+    CHECK(entry.path().string().find(".tmp") == std::string::npos);
+  f.write("file", "kept");
+  CHECK(f.colod("build" + in + "-o " + (f / "file").string()).exit_code == 5);
+  CHECK(slurp(f / "file") == "kept");
+  CHECK(f.colod("build" + in + "-o ''").exit_code == 5);
+  for (const std::string text : {"{}", "[", "{\"root\":[1]}"})
+    CHECK(f.colod("info " + f.write("tileset.json", text)).exit_code == 3);
+  CHECK(f.colod("info " + f.write("t.json", R"({"root":{"children":[{},5]}})")).exit_code == 0);
+}
+
+TEST_CASE("place, winding and repetition of faces do not matter") {
+  Folder f;
+  Mesh house = test::gable_house(12, 9, 6, 4);
+  const Mesh plain = house;
+  for (Vec3& v : house.vertices) v += Vec3(1e7, -1e7, 100);
+  for (std::size_t i = 0; i < house.faces.size(); i += 2)
+    std::swap(house.faces[i][1], house.faces[i][2]);
+  house.faces.insert(house.faces.end(), plain.faces.begin(), plain.faces.end());
+  house.faces.push_back({0, 0, 1});
+  const std::string path = f.write("h.off", off(house));
+  REQUIRE(f.colod("build " + path + kSmall + "--format ply -o " + (f / "o").string()).exit_code ==
+          0);
+  const Result e = f.colod("eval " + f.write("p.off", off(house)) + " " +
+                           (f / "o/buildings/h.layer2.ply").string());
+  const auto json = nlohmann::json::parse(e.out);
+  CHECK(json["watertight"] == true);
+  CHECK(json["volume"].get<double>() == Approx(12 * 9 * 8).epsilon(0.01));
 }
