@@ -36,12 +36,12 @@ struct Settings {
   std::string folder, rules = "robust";
   Options options;
   int threads = 0;
-  bool is_json = false;
+  bool is_json = false, has_parts = false;
 };
 
 struct Part {
   std::string type;
-  int level = 0;
+  int instance = 0, level = 0;
   double depth = 0;
   std::vector<Vec3> samples;  ///< the telling ones
 };
@@ -95,7 +95,7 @@ std::vector<Part> read_parts(const Source& source, const json& truth) {
       continue;
     }
     part_of[p["instance"]] = parts.size();
-    parts.push_back({p["type"], p["level"], p["depth"], {}});
+    parts.push_back({p["type"], p["instance"], p["level"], p["depth"], {}});
   }
   for (std::size_t f = 0; f < source.mesh.faces.size(); ++f)
     if (const auto at = part_of.find(source.face_object[f]); at != part_of.end())
@@ -119,11 +119,13 @@ bool is_present(const Part& part, const RayScene& mesh, const Frame& turn) {
 }
 
 void tally_building(const Building& b, const json& truth, int layers,
-                    std::map<std::string, Tally>& tallies) {
+                    std::map<std::string, Tally>& tallies, json& parts) {
   const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
   std::vector<RayScene> meshes;
   for (const Layer& layer : b.layers) meshes.emplace_back(layer.mesh.mesh());
   for (const Part& part : read_parts(b.source, truth)) {
+    parts.push_back(
+        {{"building", b.source.name}, {"type", part.type}, {"instance", part.instance}});
     Tally& t = tallies[part.type];
     t.first.resize(layers), t.present.resize(layers);
     if (part.samples.size() < kLeastSamples) {
@@ -141,6 +143,7 @@ void tally_building(const Building& b, const json& truth, int layers,
       ++t.never;
     else
       ++t.first[first], t.expected += first == part.level;
+    parts.back()["level"] = part.level, parts.back()["first"] = first < layers ? first : -1;
   }
 }
 
@@ -189,6 +192,7 @@ json run(const Settings& settings) {
   const Scene scene = build_scene(read_sources({settings.folder}), settings.options);
   std::map<std::string, Tally> tallies;
   int failed = 0;
+  json parts = json::array();
   for (const Building& b : scene.buildings) {
     const auto at = std::find_if(truth["buildings"].begin(), truth["buildings"].end(),
                                  [&](const json& t) { return t["name"] == b.source.name; });
@@ -197,13 +201,14 @@ json run(const Settings& settings) {
     if (b.has_failed())
       ++failed;
     else
-      tally_building(b, *at, settings.options.layers, tallies);
+      tally_building(b, *at, settings.options.layers, tallies, parts);
   }
   json result{
       {"folder", settings.folder}, {"rules", settings.rules},
       {"ns", settings.options.ns}, {"buildings", scene.buildings.size()},
       {"failed", failed},          {"volume_difference", volumes(scene, settings.options.layers)}};
   for (const auto& [type, t] : tallies) result["types"][type] = t.to_json();
+  if (settings.has_parts) result["parts"] = std::move(parts);
   return result;
 }
 
@@ -220,6 +225,8 @@ int main(int argc, char** argv) {
   app.add_option("--rules", s.rules)->check(CLI::IsMember({"robust", "paper"}));
   app.add_option("--threads", s.threads);
   app.add_flag("--json", s.is_json);
+  app.add_flag("--parts", s.has_parts,
+               "with --json: every part, and the layer on which it appears");
   CLI11_PARSE(app, argc, argv);
   s.options.rules = s.rules == "paper" ? Rules::kPaper : Rules::kRobust;
   try {
