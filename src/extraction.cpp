@@ -30,6 +30,8 @@ constexpr double kLittle = 0.2;         // share of the outlines below which a w
 constexpr double kSliver = 0.05;        // metres: facets narrower than this carry no plane
 constexpr double kLeastCovered = 0.15;  // of a plane's facets that must lie under its outline
 constexpr double kMostLost = 0.03;      // of surface and volume when planes are left out
+constexpr double kSubstantial = 0.05;   // of the largest component: one that is kept besides it
+constexpr double kNoOther = 2;          // likewise: none is
 constexpr int kPruningRounds = 2;
 constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
 
@@ -57,11 +59,13 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const Ray
                         const ExtractionOptions& options, Attempt& attempt) {
   const Partition& partition = attempt.partition;
   const std::vector<char> is_forced = forced_outside(partition, plan);
+  const double least_share = options.is_paper ? kNoOther : kSubstantial;
   std::vector<char> is_inside;
   if (options.is_paper) {
     is_inside = threshold_cells(
         gather_evidence(partition, rays, {.is_paper = true, .nr = options.nr}), is_forced);
-    return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
+    return keep_largest_components(partition, is_inside, least_share) ? is_inside
+                                                                      : std::vector<char>();
   }
   attempt.evidence = gather_evidence(partition, rays, {.nr = options.nr});
   const Evidence& evidence = attempt.evidence;
@@ -70,7 +74,7 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const Ray
   for (const double escape : kEscapes) {
     std::vector<char> trial = cut_cells(partition, evidence, is_forced,
                                         {.smoothness = options.smoothness, .escape = escape});
-    if (!keep_largest_component(partition, trial)) continue;
+    if (!keep_largest_components(partition, trial, least_share)) continue;
     const double share = explained_share(partition, evidence, trial);
     if (share > best + kWorthwhile) best = share, is_inside = std::move(trial);
     if (best > kEnough) break;
@@ -80,7 +84,8 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const Ray
   attempt.warnings.push_back("no ray sees an inside: the layer is the box around its planes");
   is_inside.resize(partition.cells.size());
   for (std::size_t c = 0; c < is_inside.size(); ++c) is_inside[c] = !is_forced[c];
-  return keep_largest_component(partition, is_inside) ? is_inside : std::vector<char>();
+  return keep_largest_components(partition, is_inside, least_share) ? is_inside
+                                                                    : std::vector<char>();
 }
 
 Attempt try_plan(const CuttingPlan& plan, const Planes& planes, const RayScene& rays,
@@ -193,14 +198,15 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   return result;
 }
 
-PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
-                            bool keeps_cavities, double* mended_volume) {
+PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside, bool is_paper,
+                            double* mended_volume) {
   assert(is_inside.size() == partition.cells.size());
-  if (!keeps_cavities) fill_cavities(partition, is_inside);
+  const double least_share = is_paper ? kNoOther : kSubstantial;
+  if (!is_paper) fill_cavities(partition, is_inside);
   const double mended = mend_pinches(partition, is_inside);
   if (mended_volume) *mended_volume = mended;
-  if (!keep_largest_component(partition, is_inside)) return {};
-  if (!keeps_cavities) fill_cavities(partition, is_inside);
+  if (!keep_largest_components(partition, is_inside, least_share)) return {};
+  if (!is_paper) fill_cavities(partition, is_inside);
   PolygonMesh mesh = build_surface(partition, BoundaryFinder(partition).find(is_inside));
   contract_short_edges(mesh, kShortest);
   return mesh;

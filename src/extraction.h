@@ -29,10 +29,12 @@ struct Extraction {
 
 /// `layer_planes` are indices into `planes`, in the order of cutting (coarse layers first, large
 /// planes first). `rays` is the scene of all planes' outlines (outline_soup), the same for all
-/// layers. The mesh looks outward and is one component; facets name planes of `planes`, or −1 for
+/// layers. The mesh looks outward; it is one component, under robust rules also others of at least
+/// 5 % of the largest one's volume (a detached annex). Facets name planes of `planes`, or −1 for
 /// candidate planes (base, rectangle, walls under roof borders). Deterministic, uses threads; about
 /// 0.2 ms a cell on one core. Throws Error{kProcess} when no plane has an outline, and under paper
-/// rules when no interior is found; robust rules then take the box around the layer, with a warning.
+/// rules when no interior is found; robust rules then take the box around the layer, with a
+/// warning.
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
                          const RayScene& rays, const ExtractionOptions& options = {});
 

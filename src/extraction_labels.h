@@ -58,8 +58,11 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
 double explained_share(const Partition& partition, const Evidence& evidence,
                        const std::vector<char>& is_inside);
 
-/// Keeps the largest face-connected set of inside cells by volume; false: there is none.
-bool keep_largest_component(const Partition& partition, std::vector<char>& is_inside);
+/// Keeps the largest face-connected set of inside cells by volume, and besides those of at least
+/// `least_share` of its volume that stand in the lower third of its height (> 1: no others); false:
+/// there is none.
+bool keep_largest_components(const Partition& partition, std::vector<char>& is_inside,
+                             double least_share);
 /// Turns outside cells that no path of outside cells joins with the space beyond the box.
 void fill_cavities(const Partition& partition, std::vector<char>& is_inside);
 

@@ -1,6 +1,7 @@
 // Based on: the remark that cell complexes are closed but touch along edges and vertices (KSR in
 // CGAL: 22 of 34 closed results are not 2-manifold), measured in November 2026.
-// Differs: the paper keeps the largest component and is silent about the rest. Splitting the fans
+// Differs: the paper keeps the largest component; robust rules keep substantial others too, as a
+// detached annex. The paper is silent about the rest. Splitting the fans
 // of a pinch leaves copies that touch, which readers that weld equal points join again; here cells
 // are turned round until no pinch is left, under both rules.
 // Notation: a pinch is an edge with more than two faces, or a vertex with more than one fan.
@@ -41,18 +42,28 @@ std::vector<int> components(const Partition& partition, const std::vector<char>&
 
 }  // namespace
 
-bool keep_largest_component(const Partition& partition, std::vector<char>& is_inside) {
+bool keep_largest_components(const Partition& partition, std::vector<char>& is_inside,
+                             double least_share) {
   const std::vector<int> component = components(partition, is_inside, 1);
   std::vector<double> volume;
+  std::vector<Box> box;
   for (std::size_t c = 0; c < component.size(); ++c) {
     if (component[c] < 0) continue;
-    volume.resize(std::max(volume.size(), static_cast<std::size_t>(component[c]) + 1), 0);
+    const std::size_t count = static_cast<std::size_t>(component[c]) + 1;
+    volume.resize(std::max(volume.size(), count), 0);
+    box.resize(volume.size());
     volume[component[c]] += partition.cells[c].volume;
+    box[component[c]].extend(partition.cells[c].box);
   }
   if (volume.empty()) return false;
-  const int largest =
-      static_cast<int>(std::max_element(volume.begin(), volume.end()) - volume.begin());
-  for (std::size_t c = 0; c < component.size(); ++c) is_inside[c] = component[c] == largest;
+  const std::size_t largest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+  const double low = box[largest].min.z() + box[largest].size().z() / 3;
+  std::vector<char> is_kept;
+  for (std::size_t k = 0; k < volume.size(); ++k)
+    is_kept.push_back(k == largest ||
+                      (volume[k] >= least_share * volume[largest] && box[k].min.z() <= low));
+  for (std::size_t c = 0; c < component.size(); ++c)
+    is_inside[c] = component[c] >= 0 && is_kept[component[c]];
   return true;
 }
 

@@ -57,10 +57,10 @@ PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
 /// triangle turns over; returns how many.
 int contract_short_edges(PolygonMesh& mesh, double length);
 
-/// The surface around the inside cells: cavities filled (unless kept), pinches mended, the largest
-/// component, short edges contracted. Empty when no cell is inside. `mended_volume`, when asked
-/// for: m³ of the cells that were turned round.
+/// The surface around the inside cells: pinches mended, short edges contracted; the largest
+/// component, and unless to the letter substantial others, with cavities filled. Empty when no cell
+/// is inside. `mended_volume`, when asked for: m³ of the cells that were turned round.
 PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
-                            bool keeps_cavities = false, double* mended_volume = nullptr);
+                            bool is_paper = false, double* mended_volume = nullptr);
 
 }  // namespace colod

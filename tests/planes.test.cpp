@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <set>
 
 #include "../src/error.h"
 #include "../src/frame.h"
@@ -172,4 +173,14 @@ TEST_CASE("to the letter: CGAL's growing finds the planes of a finely meshed cor
   CHECK(p.planes[1].area > 20);
   CHECK_THROWS_AS(detect_planes(as_source(box_mesh({0, 0, 0}, {1, 1, 1})), {.is_paper = true}),
                   Error);
+}
+
+TEST_CASE("walls three centimetres apart are one plane, twenty are two") {
+  for (const double step : {0.03, 0.2}) {
+    const Mesh m = join(box_mesh({0, 0, 0}, {5, 6, 4}), box_mesh({5, step, 0}, {10, 6, 4}));
+    std::set<double> offsets;
+    for (const Plane& plane : detect_planes(as_source(m)).planes)
+      if (plane.normal.y() < -0.9) offsets.insert(plane.offset);
+    CHECK(offsets.size() == (step < 0.1 ? 1 : 2));
+  }
 }
