@@ -287,7 +287,7 @@ TEST_CASE("planes of a pencil share one line, others do not") {
   for (int a = 6; a < 16; ++a)
     for (int b = 6; b < a; ++b) lines.insert(line_id(p, a, b));
   CHECK(lines.size() == 1);
-  CHECK(line_id(p, 6, 0) != line_id(p, 6, 7));
+  CHECK(line_id(p, 7, 0) != line_id(p, 6, 7));  // 6 and 0 are parallel
   CHECK(LineIdHash()(line_id(p, 6, 7)) == LineIdHash()(line_id(p, 9, 8)));
 }
 
