@@ -1,5 +1,7 @@
 // Based on: write beside, then rename, which POSIX makes atomic within a folder.
-// Differs: not flushed to the disk; a power cut is not guarded against, a killed run is.
+// Differs: not flushed to the disk; a power cut is not guarded against. A run that is interrupted
+// (hold_writes) leaves whole files only; one killed with SIGKILL may leave a temporary name as
+// well.
 #include "files.h"
 
 #include <unistd.h>
@@ -9,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 
 #include "../src/error.h"
 
@@ -20,6 +23,11 @@ namespace {
 
 [[noreturn]] void fail(const fs::path& path, const std::string& cause) {
   throw Error(Stage::kOutput, path.string(), cause);
+}
+
+std::mutex& writing() {
+  static std::mutex mutex;
+  return mutex;
 }
 
 /// Only names below the folder: a building called ../../x must not leave it.
@@ -41,12 +49,15 @@ void make_folder(const std::string& folder) {
     fail(folder, std::string("cannot be written to: ") + std::strerror(errno));
 }
 
+std::unique_lock<std::mutex> hold_writes() { return std::unique_lock(writing()); }
+
 void write_file(const std::string& folder, const Encoded& file) {
   check_relative(file.path);
   const fs::path target = fs::path(folder) / file.path;
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail(target.parent_path(), "the folder cannot be made: " + error.message());
+  const std::lock_guard lock(writing());
   const fs::path temporary = target.string() + ".tmp" + std::to_string(getpid());
   std::FILE* out = std::fopen(temporary.c_str(), "wb");
   if (!out) fail(target, std::string("cannot be written: ") + std::strerror(errno));

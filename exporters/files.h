@@ -2,6 +2,8 @@
 // is ever left.
 #pragma once
 
+#include <mutex>
+
 #include "exporter.h"
 
 namespace colod {
@@ -10,8 +12,11 @@ namespace colod {
 /// Error{kOutput}.
 void make_folder(const std::string& folder);
 
-/// Writes `file` below `folder`, making folders as needed. Throws Error{kOutput} naming the path
-/// and the cause.
+/// While the result lives, no file is half-written: for whoever ends the process.
+std::unique_lock<std::mutex> hold_writes();
+
+/// Thread-safe. Writes `file` below `folder`, making folders as needed. Throws Error{kOutput}
+/// naming the path and the cause.
 void write_file(const std::string& folder, const Encoded& file);
 
 }  // namespace colod

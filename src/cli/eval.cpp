@@ -55,7 +55,8 @@ Run add_eval(CLI::App& app) {
   add_input_options(app, a->read);
   app.add_option("--samples", a->distance.samples, "area-uniform samples a side")
       ->check(CLI::Range(1, 100000000));
-  app.add_option("--seed", a->distance.seed, "of the samples");
+  app.add_option("--seed", a->distance.seed, "of the samples")
+      ->check(CLI::Range(0.0, 9007199254740992.0));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(CLI::Range(0, 4096));
   return [a] { return eval(*a); };

@@ -1,13 +1,37 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "../../exporters/files.h"
 #include "../error.h"
 #include "cli.h"
 #include "log.h"
 
 namespace {
+
+/// An interrupted run ends between two files. Call it before there are threads: they inherit the
+/// blocked signals, which one thread waits for. Signals that the caller ignores stay ignored.
+void end_between_files() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action;
+    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+      sigaddset(&signals, number);
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread([signals] {
+    int number = 0;
+    if (sigwait(&signals, &number) != 0) return;
+    const auto lock = colod::hold_writes();
+    std::signal(number, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    raise(number);
+  }).detach();
+}
 
 int run(int argc, char** argv) {
   CLI::App app{
@@ -46,6 +70,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    end_between_files();
     return run(argc, argv);
   } catch (const colod::Error& e) {
     std::fprintf(stderr, "colod: %s\n", colod::cli::one_line(e.what()).c_str());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "../error.h"
@@ -34,7 +35,7 @@ inline void add_config_option(CLI::App& app) {
          [&app](const std::string& path) {
            for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_file(path)) {
              CLI::Option* option = app.get_option_no_throw("--" + item.fullname());
-             if (option == nullptr || item.name == "config")
+             if (option == nullptr || item.name == "config" || item.name == "help")
                throw Error(Stage::kUsage, path, "unknown option '" + item.fullname() + "'");
              if (option->count() == 0)
                for (const std::string& value : item.inputs) option->add_result(value);
@@ -57,8 +58,11 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
   for (const OptionInfo& info : option_table()) {
     const auto set = [&options, &info](const double& value) {
       if (info.is_integer &&
-          (!(value >= info.min && value <= info.max) || value != std::floor(value)))
-        throw Error(Stage::kUsage, "--" + info.name, "must be a whole number in its range");
+          (!(value >= info.min && value <= info.max) || value != std::floor(value))) {
+        std::ostringstream range;
+        range << std::setprecision(16) << info.min << " to " << info.max;
+        throw Error(Stage::kUsage, "--" + info.name, "must be a whole number from " + range.str());
+      }
       info.set(options, value);
     };
     std::ostringstream help;

@@ -38,7 +38,8 @@ Run add_synth(CLI::App& app) {
   app.add_option("-o,--out", a->out, "folder to write to")->required();
   app.add_option("--buildings", a->options.buildings, "how many, default 20")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--seed", a->options.seed, "of everything drawn at random, default 1");
+  app.add_option("--seed", a->options.seed, "of everything drawn at random, default 1")
+      ->check(CLI::Range(0.0, 9007199254740992.0));
   app.add_flag("--scan", a->options.is_scan, "as a simulated photogrammetry mesh");
   app.add_option("--noise", a->options.noise, "sigma of the scan's noise [m], default 0.025")
       ->check(CLI::Range(0.0, 1.0));
