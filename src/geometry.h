@@ -54,6 +54,7 @@ struct Source {
   std::vector<int> face_object;  ///< per face of `mesh`: the file's object number (OBJ group, PLY
                                  ///< property `object`); empty: none
   std::vector<std::string> warnings;  ///< what the reader mended or doubts, one line each
+  double read_seconds = 0;            ///< wall clock that reading its file took
 
   bool is_mesh() const { return !mesh.faces.empty(); }
 };

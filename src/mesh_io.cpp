@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "mesh_io_formats.h"
+#include "stopwatch.h"
 
 namespace colod {
 
@@ -327,7 +328,16 @@ ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOption
   ReadResult result;
   for (const std::string& path : list_files(inputs)) {
     try {
-      for (Source& s : read_file(path, options)) result.sources.push_back(std::move(s));
+      double seconds = 0;
+      std::vector<Source> sources;
+      {
+        Stopwatch watch(seconds);
+        sources = read_file(path, options);
+      }
+      for (Source& s : sources) {
+        s.read_seconds = seconds;
+        result.sources.push_back(std::move(s));
+      }
     } catch (const Error& e) {
       result.failures.push_back({path, std::string(e.what()).substr(e.item.size() + 2)});
     }

@@ -6,28 +6,14 @@
 #include "pipeline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 
 #include "error.h"
 #include "parallel.h"
+#include "stopwatch.h"
 
 namespace colod {
 namespace {
-
-/// Adds the seconds of its life to a counter.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds)
-      : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
@@ -133,6 +119,7 @@ Building segment_building(Source source, const Options& options) {
   Building b;
   try {
     b.frame = main_frame(source);
+    b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
     find_segments(b, options);
   } catch (const Error& e) {

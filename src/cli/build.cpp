@@ -27,7 +27,7 @@ int build(const BuildArguments& a) {
   const Log log = a.run.log();
   ReadResult input = read_sources(a.inputs, a.read);
   make_folder(a.output.out);  // fails now rather than after all the work
-  const Scene scene =
+  Scene scene =
       build_scene(std::move(input), a.options, [&](auto&&... args) { log.progress(args...); });
   export_scene(scene, a.output);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

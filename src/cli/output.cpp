@@ -12,6 +12,7 @@
 #include "../error.h"
 #include "../parallel.h"
 #include "../report.h"
+#include "../stopwatch.h"
 
 namespace colod::cli {
 namespace {
@@ -35,20 +36,20 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
       ->check(CLI::IsMember({"glb", "3dtiles", "obj", "ply"}));
 }
 
-void export_scene(const Scene& scene, const OutputArguments& a) {
+void export_scene(Scene& scene, const OutputArguments& a) {
   const std::set<std::string> formats(a.formats.begin(), a.formats.end());
-  std::vector<ExportBuilding> buildings;
-  for (const Building& b : scene.buildings) {
-    ExportBuilding e = export_building(b);
-    if (!e.layers.empty()) buildings.push_back(std::move(e));
-  }
+  std::vector<ExportBuilding> buildings(scene.buildings.size());
   parallel_for(buildings.size(), [&](std::size_t i) {
+    Stopwatch watch(scene.buildings[i].timings.export_);
+    buildings[i] = export_building(scene.buildings[i]);
+    if (buildings[i].layers.empty()) return;
     if (formats.count("glb")) write_file(a.out, encode_building_glb(buildings[i]));
     for (const ExportLayer& layer : buildings[i].layers) {
       if (formats.count("obj")) write_file(a.out, encode_obj(buildings[i], layer));
       if (formats.count("ply")) write_file(a.out, encode_ply(buildings[i], layer));
     }
   });
+  std::erase_if(buildings, [](const ExportBuilding& b) { return b.layers.empty(); });
   if (formats.count("3dtiles") && !buildings.empty()) {
     // tileset.json last: whoever finds it finds the tiles it names.
     const std::vector<Encoded> files = encode_tileset(buildings);

@@ -17,8 +17,8 @@ struct OutputArguments {
 
 void add_output_options(CLI::App& app, OutputArguments& a);
 
-/// Everything but report.json. Throws Error{kOutput}.
-void export_scene(const Scene& scene, const OutputArguments& a);
+/// Everything but report.json; notes the seconds in each building's timings. Throws Error{kOutput}.
+void export_scene(Scene& scene, const OutputArguments& a);
 
 /// Failures as errors, the rest as warnings, one line each.
 void report_problems(const Scene& scene, const Log& log);
