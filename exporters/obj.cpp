@@ -5,7 +5,9 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 namespace colod {
 
@@ -31,6 +33,24 @@ void print_face(std::string& out, const Ring& ring) {
   out += '\n';
 }
 
+/// Readers may cut such a polygon up in any way and get the same surface; of any other, some make
+/// triangles without area or across its border.
+bool is_strictly_convex(const PolygonMesh& mesh, const PolygonMesh::Facet& facet) {
+  constexpr double kLeastSine = 1e-3;  // of the turn at a corner
+  if (facet.rings.size() != 1 || facet.rings[0].size() < 3) return false;
+  const std::vector<int>& ring = facet.rings[0];
+  double turned = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec3& at = mesh.vertices[ring[i]];
+    const Vec3 in = (at - mesh.vertices[ring[(i + ring.size() - 1) % ring.size()]]).normalized();
+    const Vec3 out = (mesh.vertices[ring[(i + 1) % ring.size()]] - at).normalized();
+    const double sine = in.cross(out).dot(facet.normal);
+    if (!(sine > kLeastSine)) return false;
+    turned += std::atan2(sine, in.dot(out));
+  }
+  return turned < 3 * std::numbers::pi;  // once round, not twice
+}
+
 std::string stem(const ExportBuilding& building, const ExportLayer& layer) {
   return "buildings/" + building.name + ".layer" + std::to_string(layer.layer);
 }
@@ -47,14 +67,13 @@ Encoded encode_obj(const ExportBuilding& building, const ExportLayer& layer) {
     for (int k = 0; k < 3; ++k) out += ' ', print(out, world[k]);
     out += '\n';
   }
-  const auto is_polygon = [&](const PolygonMesh::Facet& f) {
-    return f.rings.size() == 1 && f.rings[0].size() >= 3;
-  };
+  std::vector<char> is_polygon;
   for (const PolygonMesh::Facet& f : layer.mesh.facets)
-    if (is_polygon(f)) print_face(out, f.rings[0]);
+    is_polygon.push_back(is_strictly_convex(layer.mesh, f));
+  for (std::size_t f = 0; f < is_polygon.size(); ++f)
+    if (is_polygon[f]) print_face(out, layer.mesh.facets[f].rings[0]);
   for (std::size_t t = 0; t < layer.mesh.triangles.size(); ++t)
-    if (!is_polygon(layer.mesh.facets[layer.mesh.facet_of_triangle[t]]))
-      print_face(out, layer.mesh.triangles[t]);
+    if (!is_polygon[layer.mesh.facet_of_triangle[t]]) print_face(out, layer.mesh.triangles[t]);
   return {stem(building, layer) + ".obj", out};
 }
 

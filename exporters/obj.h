@@ -1,5 +1,5 @@
-// OBJ (polygons where a facet has no hole) and binary PLY (double precision) per layer, in world
-// coordinates.
+// OBJ (a polygon for each strictly convex facet, triangles for the others) and binary PLY (double
+// precision, triangles) per layer, in world coordinates.
 #pragma once
 
 #include "exporter.h"

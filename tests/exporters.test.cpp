@@ -227,10 +227,20 @@ TEST_CASE("OBJ and PLY give back every double at 10^6 metres") {
     }
 }
 
-TEST_CASE("OBJ writes a facet without a hole as one polygon") {
-  const ExportBuilding house = three_layers("house", kFar);
-  const std::string text = encode_obj(house, house.layers[0]).bytes;
-  CHECK(std::count(text.begin(), text.end(), 'f') == 6);
+TEST_CASE("OBJ writes a convex facet as one polygon, and one with a straight corner as triangles") {
+  ExportBuilding house = three_layers("house", kFar);
+  const auto faces = [&] {
+    const std::string text = encode_obj(house, house.layers[0]).bytes;
+    int count = 0;
+    for (std::size_t at = 0; (at = text.find("\nf ", at)) != text.npos; ++at) ++count;
+    return count;
+  };
+  CHECK(faces() == 6);
+  PolygonMesh& mesh = house.layers[0].mesh;
+  std::vector<int>& ring = mesh.facets[0].rings[0];
+  mesh.vertices.push_back((mesh.vertices[ring[0]] + mesh.vertices[ring[1]]) / 2);
+  ring.insert(ring.begin() + 1, static_cast<int>(mesh.vertices.size()) - 1);
+  CHECK(faces() == 7);
 }
 
 TEST_CASE("a tileset's tiles hold their boxes, errors and buildings") {
