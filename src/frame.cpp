@@ -1,5 +1,5 @@
-// Differs: the paper has no such step. Voxels and rays follow the axes: without it a turned building
-// is another building.
+// Differs: the paper has no such step. Voxels and rays follow the axes: without it a turned
+// building is another building.
 //
 // Notation: weight = area of a face in mm² (1 for a point), theta = direction of a wall's normal
 // modulo 90 degrees.
@@ -48,8 +48,9 @@ std::vector<Patch> patches(const Source& source, const Vec3& origin) {
   return result;
 }
 
-/// Direction of a wall's normal in [0, 90) degrees, in units of 2^-20 of a quarter turn.
-constexpr std::int64_t kTurn = 1 << 20;
+/// Direction of a wall's normal in [0, 90) degrees, in units of 2^-40 of a quarter turn: so fine
+/// that a turned building gets the same local coordinates after rounding.
+constexpr std::int64_t kTurn = std::int64_t{1} << 40;
 std::int64_t quarter_angle(const Vec3& normal) {
   double t = std::atan2(normal.y(), normal.x()) / kQuarter;
   t -= std::floor(t);
