@@ -19,6 +19,8 @@
 #include <set>
 #include <tuple>
 
+#include "intersections.h"
+
 namespace colod {
 namespace {
 
@@ -283,7 +285,7 @@ class Contraction {
       const Face& f = mesh_.triangles[t];
       Face g = f;
       std::replace(g.begin(), g.end(), from, to);
-      if (!keeps_direction(cross(f), cross(g))) return false;
+      if (!keeps_direction(cross(f), cross(g)) || meets_another(g, shared, moved)) return false;
     }
     for (const int t : shared) {
       is_gone_[t] = 1;
@@ -311,6 +313,28 @@ class Contraction {
   Vec3 cross(const Face& f) const {
     return (mesh_.vertices[f[1]] - mesh_.vertices[f[0]])
         .cross(mesh_.vertices[f[2]] - mesh_.vertices[f[0]]);
+  }
+  /// A triangle that moves would cut one that stays.
+  bool meets_another(const Face& f, const std::vector<int>& shared,
+                     const std::vector<int>& moved) const {
+    const Box box = box_of(f);
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+      const auto is_t = [t](int i) { return i == t; };
+      const Box other = box_of(mesh_.triangles[t]);
+      const bool is_near = !is_gone_[t] && (box.min.array() <= other.max.array()).all() &&
+                           (other.min.array() <= box.max.array()).all();
+      if (!is_near || std::any_of(shared.begin(), shared.end(), is_t) ||
+          std::any_of(moved.begin(), moved.end(), is_t) ||
+          is_degenerate(mesh_.vertices, mesh_.triangles[t]))
+        continue;
+      if (do_intersect(mesh_.vertices, f, mesh_.triangles[t])) return true;
+    }
+    return false;
+  }
+  Box box_of(const Face& f) const {
+    Box box;
+    for (const int v : f) box.extend(mesh_.vertices[v]);
+    return box;
   }
   bool has(int t, int v) const {
     const Face& f = mesh_.triangles[t];

@@ -53,8 +53,8 @@ bool is_closed_manifold(const std::vector<Face>& triangles);
 /// sorted by plane id; `plane` is the source plane of the partition's.
 PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
 
-/// Contracts edges shorter than `length` where the surface stays closed and 2-manifold and no
-/// triangle turns over; returns how many.
+/// Contracts edges shorter than `length` where the surface stays closed and 2-manifold, no triangle
+/// turns over and none comes to cut another; returns how many.
 int contract_short_edges(PolygonMesh& mesh, double length);
 
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest

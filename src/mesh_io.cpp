@@ -13,6 +13,7 @@
 
 #include "mesh_io_formats.h"
 #include "stopwatch.h"
+#include "union_find.h"
 
 namespace colod {
 
@@ -195,20 +196,14 @@ Source take(const RawFile& raw, const Triangles& all, const std::vector<int>& ch
 /// Connected components over shared (or equal) points: triangle → component, numbered by first
 /// triangle.
 std::vector<int> components(const RawFile& raw, const Triangles& all, int& count) {
-  std::vector<int> parent = weld(raw.points);
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  const std::vector<int> welded = weld(raw.points);
+  UnionFind sets(welded.size());
   for (const Face& f : all.faces)
-    for (int i = 1; i < 3; ++i) {
-      const int a = root(f[0]), b = root(f[i]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int i = 1; i < 3; ++i) sets.unite(welded[f[0]], welded[f[i]]);
   std::vector<int> number(raw.points.size(), -1), result;
   count = 0;
   for (const Face& f : all.faces) {
-    int& c = number[root(f[0])];
+    int& c = number[sets.find(welded[f[0]])];
     if (c < 0) c = count++;
     result.push_back(c);
   }

@@ -7,21 +7,20 @@
 // *Notation:* none.
 #include <CGAL/Bbox_3.h>
 #include <CGAL/Box_intersection_d/Box_with_handle_d.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "intersections.h"
 #include "metrics.h"
 #include "parallel.h"
+#include "union_find.h"
 
 namespace colod {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
 using FaceBox = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Face*>;
 
 constexpr double kCoplanarDistance = 1e-4;  // m
@@ -96,27 +95,6 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
   }
 }
 
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) {
-    const int a = find(i), b = find(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  int count_roots() const {
-    int roots = 0;
-    for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == static_cast<int>(i);
-    return roots;
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 void count_edges(const std::vector<EdgeUse>& uses, Validity& v) {
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
     const std::size_t n = last - first;
@@ -137,7 +115,7 @@ std::int64_t count_nonmanifold_vertices(const Welded& m, const std::vector<EdgeU
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
     if (last - first != 2) return;
     for (int vertex : {uses[first].low, uses[first].high})
-      fans.join(corner(uses[first], vertex), corner(uses[first + 1], vertex));
+      fans.unite(corner(uses[first], vertex), corner(uses[first + 1], vertex));
   });
   std::vector<int> fans_of(m.points.size(), 0);
   for (int c = 0; c < static_cast<int>(3 * m.faces.size()); ++c)
@@ -148,9 +126,9 @@ std::int64_t count_nonmanifold_vertices(const Welded& m, const std::vector<EdgeU
 int count_components(const Welded& m, const std::vector<EdgeUse>& uses) {
   UnionFind sets(m.faces.size());
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first + 1; i < last; ++i) sets.join(uses[first].face, uses[i].face);
+    for (std::size_t i = first + 1; i < last; ++i) sets.unite(uses[first].face, uses[i].face);
   });
-  return sets.count_roots();
+  return sets.count_sets();
 }
 
 /// Neighbours over edges with exactly two faces, −1: none.
@@ -222,77 +200,21 @@ int count_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
   return polygons;
 }
 
-/// Exact tests on pairs of faces, by the vertices that they share.
-class FacePairs {
- public:
-  explicit FacePairs(const Welded& m) : faces_(m.faces) {
-    points_.reserve(m.points.size());
-    for (const Vec3& p : m.points) points_.emplace_back(p.x(), p.y(), p.z());
-  }
-
-  bool is_degenerate(int face) const {
-    const Face& f = faces_[face];
-    return CGAL::collinear(points_[f[0]], points_[f[1]], points_[f[2]]);
-  }
-
-  bool do_intersect(int i, int j) const {
-    int shared[3], n = 0;  // corners of i that j has too
-    for (int k = 0; k < 3; ++k)
-      if (corner_of(j, faces_[i][k]) >= 0) shared[n++] = k;
-    if (n == 0) return CGAL::do_intersect(triangle(i), triangle(j));
-    if (n == 1)
-      return touches_opposite(i, shared[0], j) ||
-             touches_opposite(j, corner_of(j, faces_[i][shared[0]]), i);
-    return n == 3 || is_folded(i, 3 - shared[0] - shared[1], j);
-  }
-
- private:
-  int corner_of(int face, int vertex) const {
-    const Face& f = faces_[face];
-    for (int k = 0; k < 3; ++k)
-      if (f[k] == vertex) return k;
-    return -1;
-  }
-  Kernel::Triangle_3 triangle(int face) const {
-    const Face& f = faces_[face];
-    return {points_[f[0]], points_[f[1]], points_[f[2]]};
-  }
-  bool touches_opposite(int face, int corner, int other) const {
-    const Face& f = faces_[face];
-    const Kernel::Segment_3 side(points_[f[(corner + 1) % 3]], points_[f[(corner + 2) % 3]]);
-    return CGAL::do_intersect(side, triangle(other));
-  }
-  /// Coplanar neighbours whose free corners lie on the same side of the common edge.
-  bool is_folded(int i, int free_corner, int j) const {
-    const Face& f = faces_[i];
-    const int a = f[(free_corner + 1) % 3], b = f[(free_corner + 2) % 3];
-    const int d = faces_[j][3 - corner_of(j, a) - corner_of(j, b)];
-    const Point &pa = points_[a], &pb = points_[b], &pc = points_[f[free_corner]], &pd = points_[d];
-    return CGAL::coplanar(pa, pb, pc, pd) &&
-           CGAL::coplanar_orientation(pa, pb, pc, pd) == CGAL::POSITIVE;
-  }
-
-  const std::vector<Face>& faces_;
-  std::vector<Point> points_;
-};
-
-std::int64_t count_intersecting(const FacePairs& tests,
-                                const std::vector<std::pair<int, int>>& pairs) {
+std::int64_t count_intersecting(const Welded& m, const std::vector<std::pair<int, int>>& pairs) {
   constexpr std::size_t kGrain = 256;
   const std::size_t blocks = (pairs.size() + kGrain - 1) / kGrain;
   std::vector<std::int64_t> found(blocks, 0);
   parallel_for(blocks, [&](std::size_t b) {
     for (std::size_t i = b * kGrain; i < std::min(pairs.size(), (b + 1) * kGrain); ++i)
-      found[b] += tests.do_intersect(pairs[i].first, pairs[i].second);
+      found[b] += do_intersect(m.points, m.faces[pairs[i].first], m.faces[pairs[i].second]);
   });
   return std::accumulate(found.begin(), found.end(), std::int64_t{0});
 }
 
 std::int64_t count_self_intersections(const Welded& m) {
-  const FacePairs tests(m);
   std::vector<FaceBox> boxes;
   for (int f = 0; f < static_cast<int>(m.faces.size()); ++f) {
-    if (tests.is_degenerate(f)) continue;
+    if (is_degenerate(m.points, m.faces[f])) continue;
     Box box;
     for (int v : m.faces[f]) box.extend(m.points[v]);
     boxes.emplace_back(
@@ -304,11 +226,11 @@ std::int64_t count_self_intersections(const Welded& m) {
   const auto collect = [&](const FaceBox& a, const FaceBox& b) {
     pairs.emplace_back(a.handle() - m.faces.data(), b.handle() - m.faces.data());
     if (pairs.size() < kPairsAtOnce) return;
-    found += count_intersecting(tests, pairs);
+    found += count_intersecting(m, pairs);
     pairs.clear();
   };
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), collect);
-  return found + count_intersecting(tests, pairs);
+  return found + count_intersecting(m, pairs);
 }
 
 }  // namespace

@@ -12,12 +12,12 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 #include <unordered_map>
 
 #include "synth_internal.h"
+#include "union_find.h"
 
 namespace colod::synth {
 namespace {
@@ -177,7 +177,7 @@ void keep_largest_fans(std::size_t vertices, std::vector<Face>& faces) {
   }
 }
 
-/// The component of each face, connected over edges; numbers are a face of the component.
+/// The component of each face, connected over edges; numbers are the first face of the component.
 std::vector<int> edge_components(const std::vector<Face>& faces) {
   std::vector<std::array<int, 3>> edges;  // low, high, face
   for (int f = 0; f < static_cast<int>(faces.size()); ++f)
@@ -186,17 +186,12 @@ std::vector<int> edge_components(const std::vector<Face>& faces) {
       edges.push_back({std::min(a, b), std::max(a, b), f});
     }
   std::sort(edges.begin(), edges.end());
-  std::vector<int> parent(faces.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  UnionFind sets(faces.size());
   for (std::size_t e = 1; e < edges.size(); ++e)
     if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1])
-      parent[find(edges[e][2])] = find(edges[e - 1][2]);
+      sets.unite(edges[e][2], edges[e - 1][2]);
   std::vector<int> component(faces.size());
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f) component[f] = find(f);
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f) component[f] = sets.find(f);
   return component;
 }
 

@@ -7,6 +7,7 @@
 
 #include "../src/error.h"
 #include "../src/extraction_labels.h"
+#include "../src/metrics.h"
 #include "../src/parallel.h"
 #include "extraction_helpers.h"
 #include "meshes.h"
@@ -280,6 +281,37 @@ TEST_CASE("short edges are contracted") {
   CHECK(contract_short_edges(mesh, 1e-3) == 0);
   CHECK(contract_short_edges(mesh, 4.5) > 0);
   CHECK(check(mesh).is_closed);
+}
+
+TEST_CASE("no contraction makes the surface cut itself") {
+  const auto add = [](PolygonMesh& mesh, const Mesh& part) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const Face& f : part.faces) {
+      mesh.triangles.push_back({f[0] + first, f[1] + first, f[2] + first});
+      mesh.facet_of_triangle.push_back(static_cast<int>(mesh.facets.size()));
+    }
+    mesh.facets.emplace_back();
+  };
+  const PolygonMesh house = extract(gable_house(10, 6, 4, 3)).mesh;
+  PolygonMesh alone = house;
+  const int freely = contract_short_edges(alone, 4.5);
+  int tried = 0, refused = 0;
+  for (double x = 0.3; x < 10; x += 1.3)
+    for (double y = 0.3; y < 6; y += 1.3)
+      for (double z = 0.3; z < 7; z += 1.3) {
+        const Vec3 at(x, y, z);
+        const Mesh bit = box_mesh(at - Vec3::Constant(0.01), at + Vec3::Constant(0.01));
+        PolygonMesh mesh = house, only_bit;
+        add(mesh, bit), add(only_bit, bit);
+        if (check_validity(mesh.mesh()).self_intersections > 0) continue;
+        ++tried;
+        const int bits = contract_short_edges(only_bit, 4.5);
+        refused += contract_short_edges(mesh, 4.5) < freely + bits;
+        CHECK(check_validity(mesh.mesh()).self_intersections == 0);
+      }
+  CHECK(tried > 40);
+  CHECK(refused > 0);
 }
 
 TEST_CASE("a pinched boundary is seen") {
