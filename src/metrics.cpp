@@ -97,12 +97,18 @@ struct OneSided {
   double max = 0, mean = 0, rms = 0;
 };
 
+/// `distance` is given a point and an upper bound of the result, from the probe before: neighbours
+/// in the list are mostly neighbours in space.
 template <typename Distance>
 OneSided measure(const Probes& probes, const Distance& distance) {
   std::vector<double> distances(probes.points.size());
-  parallel_for(
-      probes.points.size(), [&](std::size_t i) { distances[i] = distance(probes.points[i]); },
-      kGrain);
+  parallel_ranges(probes.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    double bound = std::numeric_limits<double>::infinity();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i > begin) bound = distances[i - 1] + (probes.points[i] - probes.points[i - 1]).norm();
+      distances[i] = distance(probes.points[i], bound);
+    }
+  });
   OneSided side;
   double squares = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
@@ -118,14 +124,15 @@ OneSided measure(const Probes& probes, const Distance& distance) {
 
 OneSided measure_to_mesh(const Probes& probes, const Mesh& target) {
   const RayScene scene(target);
-  return measure(probes, [&](const Vec3& p) { return scene.nearest(p).distance; });
+  return measure(probes,
+                 [&](const Vec3& p, double bound) { return scene.nearest(p, bound).distance; });
 }
 
 OneSided measure_to_cloud(const Probes& probes, const PointCloud& target) {
   Search::Tree tree;
   for (const Vec3& p : target.points) tree.insert({p.x(), p.y(), p.z()});
   tree.build();  // before the threads: a lazy build is not safe
-  return measure(probes, [&](const Vec3& p) {
+  return measure(probes, [&](const Vec3& p, double) {
     const Search search(tree, {p.x(), p.y(), p.z()}, 1);
     return std::sqrt(search.begin()->second);
   });

@@ -292,7 +292,7 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-NearestPoint RayScene::nearest(const Vec3& query) const {
+NearestPoint RayScene::nearest(const Vec3& query, double within) const {
   if (!impl_->scene || !query.allFinite()) return {};
   NearestQuery q{&impl_->corners, query - impl_->center, 0};
   q.margin = kRelativeError * (q.query.norm() + impl_->scale);
@@ -300,7 +300,7 @@ NearestPoint RayScene::nearest(const Vec3& query) const {
   embree.x = static_cast<float>(q.query.x());
   embree.y = static_cast<float>(q.query.y());
   embree.z = static_cast<float>(q.query.z());
-  embree.radius = std::numeric_limits<float>::infinity();
+  embree.radius = static_cast<float>(within + q.margin);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl_->scene, &embree, &context, visit_triangle, &q);

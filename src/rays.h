@@ -43,7 +43,10 @@ class RayScene {
   bool is_occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const;
   /// All hits along the ray, nearest first; at most `limit`.
   std::vector<RayHit> all_hits(const Vec3& origin, const Vec3& direction, int limit = 1024) const;
-  NearestPoint nearest(const Vec3& query) const;
+  /// A `within` that is no less than the distance saves time and changes nothing; below it the
+  /// answer is arbitrary or none (triangle −1).
+  NearestPoint nearest(const Vec3& query,
+                       double within = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Impl;

@@ -131,6 +131,7 @@ TEST_CASE("nearest agrees with brute force to double precision") {
     const NearestPoint near = scene.nearest(p);
     REQUIRE(near.distance == Approx(best).epsilon(1e-10));
     REQUIRE((near.point - p).norm() == Approx(best).epsilon(1e-10));
+    REQUIRE(scene.nearest(p, near.distance).triangle == near.triangle);
     REQUIRE(brute_distance(soup, soup.faces[near.triangle], p) == Approx(best).epsilon(1e-10));
   }
 }
