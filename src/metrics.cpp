@@ -122,18 +122,14 @@ OneSided measure(const Probes& probes, const Distance& distance) {
   return side;
 }
 
-OneSided measure_to_mesh(const Probes& probes, const Mesh& target) {
-  const RayScene scene(target);
+OneSided measure_to_mesh(const Probes& probes, const RayScene& target) {
   return measure(probes,
-                 [&](const Vec3& p, double bound) { return scene.nearest(p, bound).distance; });
+                 [&](const Vec3& p, double bound) { return target.nearest(p, bound).distance; });
 }
 
-OneSided measure_to_cloud(const Probes& probes, const PointCloud& target) {
-  Search::Tree tree;
-  for (const Vec3& p : target.points) tree.insert({p.x(), p.y(), p.z()});
-  tree.build();  // before the threads: a lazy build is not safe
+OneSided measure_to_cloud(const Probes& probes, const Search::Tree& target) {
   return measure(probes, [&](const Vec3& p, double) {
-    const Search search(tree, {p.x(), p.y(), p.z()}, 1);
+    const Search search(target, {p.x(), p.y(), p.z()}, 1);
     return std::sqrt(search.begin()->second);
   });
 }
@@ -150,19 +146,51 @@ Distances combine(const OneSided& a_to_b, const OneSided& b_to_a, const Box& box
 
 }  // namespace
 
+struct DistanceGauge::Impl {
+  DistanceOptions options;
+  Box box;
+  Probes probes;
+  std::unique_ptr<RayScene> mesh;  ///< null: a cloud
+  Search::Tree cloud;
+
+  Impl(const Mesh& a, const DistanceOptions& o) : options(o) {
+    const Mesh from = usable_part(a, "first mesh");
+    box = bounding_box(from.vertices);
+    probes = sample_surface(from, options);
+    mesh = std::make_unique<RayScene>(from);
+  }
+  Impl(const PointCloud& a, const std::string& name, const DistanceOptions& o) : options(o) {
+    probes.points = usable_part(a, name.empty() ? "source" : name.c_str()).points;
+    probes.samples = probes.points.size();
+    box = bounding_box(probes.points);
+    for (const Vec3& p : probes.points) cloud.insert({p.x(), p.y(), p.z()});
+    cloud.build();  // before the threads: a lazy build is not safe
+  }
+};
+
+DistanceGauge::DistanceGauge(const Mesh& a, const DistanceOptions& options)
+    : impl_(std::make_unique<Impl>(a, options)) {}
+DistanceGauge::DistanceGauge(const Source& a, const DistanceOptions& options)
+    : impl_(a.is_mesh() ? std::make_unique<Impl>(a.mesh, options)
+                        : std::make_unique<Impl>(a.cloud, a.name, options)) {}
+DistanceGauge::~DistanceGauge() = default;
+
+Distances DistanceGauge::measure_to(const Mesh& b) const {
+  const Mesh to = usable_part(b, "second mesh");
+  const OneSided there = measure_to_mesh(impl_->probes, RayScene(to));
+  const Probes back = sample_surface(to, impl_->options);
+  return combine(
+      there,
+      impl_->mesh ? measure_to_mesh(back, *impl_->mesh) : measure_to_cloud(back, impl_->cloud),
+      impl_->box);
+}
+
 Distances measure_distances(const Mesh& a, const Mesh& b, const DistanceOptions& options) {
-  const Mesh from = usable_part(a, "first mesh"), to = usable_part(b, "second mesh");
-  return combine(measure_to_mesh(sample_surface(from, options), to),
-                 measure_to_mesh(sample_surface(to, options), from), bounding_box(from.vertices));
+  return DistanceGauge(a, options).measure_to(b);
 }
 
 Distances measure_distances(const Source& a, const Mesh& b, const DistanceOptions& options) {
-  if (a.is_mesh()) return measure_distances(a.mesh, b, options);
-  const PointCloud from = usable_part(a.cloud, a.name.empty() ? "source" : a.name.c_str());
-  const Mesh to = usable_part(b, "model");
-  const Probes points = {from.points, from.points.size()};
-  return combine(measure_to_mesh(points, to), measure_to_cloud(sample_surface(to, options), from),
-                 bounding_box(from.points));
+  return DistanceGauge(a, options).measure_to(b);
 }
 
 }  // namespace colod

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "geometry.h"
 
@@ -24,8 +25,8 @@ struct Validity {
       0;  ///< intersecting face pairs that share no vertex/edge legitimately
   std::int64_t degenerate_faces = 0;  ///< zero area in doubles, or a coordinate that is not finite
                                       ///< (counted here and ignored elsewhere)
-  int components = 0;  ///< sets of faces connected over edges
-  double volume = 0;   ///< m³, signed
+  int components = 0;                 ///< sets of faces connected over edges
+  double volume = 0;                  ///< m³, signed
   double area = 0;
 };
 
@@ -47,13 +48,26 @@ struct Distances {
   double rms_a_to_b = 0, rms_b_to_a = 0;    ///< metres
 };
 
-/// Surface to surface. Maxima are over samples and vertices, means over the samples only. Both
-/// meshes need a finite face with an area, else Error. Never NaN; `relative` divides by 1 where a
-/// has no extent. Deterministic, runs in parallel.
-Distances measure_distances(const Mesh& a, const Mesh& b, const DistanceOptions& options = {});
+/// Measures one mesh or source (a) against many meshes: its samples and its search tree are made
+/// once. Maxima are over samples and vertices, means over the samples only; of a cloud all points
+/// are used, those not finite are left out, and the way back is to its nearest point. Both sides
+/// need a finite face with an area (a cloud: a finite point), else Error. Never NaN; `relative`
+/// divides by 1 where a has no extent. Deterministic, runs in parallel.
+class DistanceGauge {
+ public:
+  explicit DistanceGauge(const Mesh& a, const DistanceOptions& options = {});
+  explicit DistanceGauge(const Source& a, const DistanceOptions& options = {});
+  ~DistanceGauge();
 
-/// From a source (mesh surface, or the points of a cloud) to a model, and back (back to a cloud: to
-/// its nearest point). All points of a cloud are used; those not finite are left out.
+  Distances measure_to(const Mesh& b) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One measurement by a DistanceGauge.
+Distances measure_distances(const Mesh& a, const Mesh& b, const DistanceOptions& options = {});
 Distances measure_distances(const Source& a, const Mesh& b, const DistanceOptions& options = {});
 
 }  // namespace colod

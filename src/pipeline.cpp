@@ -101,8 +101,8 @@ void unturn(PolygonMesh& mesh, const Frame& frame) {
   for (auto& f : mesh.facets) f.normal = turn.to_world(f.normal);
 }
 
-void measure(const Building& b, Layer& layer) {
-  layer.distances = measure_distances(b.source, layer.mesh.mesh());
+void measure(const DistanceGauge& source, Layer& layer) {
+  layer.distances = source.measure_to(layer.mesh.mesh());
   layer.validity = check_validity(layer.mesh.mesh());
   layer.validity.polygons = static_cast<int>(layer.mesh.facets.size());
   layer.geometric_error = layer.distances.a_to_b;
@@ -175,8 +175,9 @@ void mesh_building(Building& b, const Options& options) {
     }
     keep_chain_sound(b, options);
     Stopwatch watch(b.timings.measure);
+    const DistanceGauge source(b.source);
     for (Layer& layer : b.layers)
-      if (layer.failure.empty()) measure(b, layer);
+      if (layer.failure.empty()) measure(source, layer);
     for (std::size_t k = b.layers.size() - 1; k-- > 0;)
       b.layers[k].geometric_error =
           std::max(b.layers[k].geometric_error, b.layers[k + 1].geometric_error);
