@@ -6,12 +6,9 @@
 // *Notation:* none.
 #include "metrics.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-
 #include <algorithm>
 #include <cmath>
+#include <nanoflann.hpp>
 
 #include "error.h"
 #include "parallel.h"
@@ -20,8 +17,19 @@
 namespace colod {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Search = CGAL::Orthogonal_k_neighbor_search<CGAL::Search_traits_3<Kernel>>;
+/// Points as nanoflann wants to see them.
+struct Points {
+  const std::vector<Vec3>& points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>,
+                                                      Points, 3, std::size_t>;
 
 constexpr std::size_t kGrain = 256;  // queries a task takes
 
@@ -127,10 +135,12 @@ OneSided measure_to_mesh(const Probes& probes, const RayScene& target) {
                  [&](const Vec3& p, double bound) { return target.nearest(p, bound).distance; });
 }
 
-OneSided measure_to_cloud(const Probes& probes, const Search::Tree& target) {
+OneSided measure_to_cloud(const Probes& probes, const PointTree& target) {
   return measure(probes, [&](const Vec3& p, double) {
-    const Search search(target, {p.x(), p.y(), p.z()}, 1);
-    return std::sqrt(search.begin()->second);
+    std::size_t nearest = 0;
+    double squared = 0;
+    target.knnSearch(p.data(), 1, &nearest, &squared);
+    return std::sqrt(squared);
   });
 }
 
@@ -151,7 +161,8 @@ struct DistanceGauge::Impl {
   Box box;
   Probes probes;
   std::unique_ptr<RayScene> mesh;  ///< null: a cloud
-  Search::Tree cloud;
+  Points points{probes.points};
+  std::unique_ptr<PointTree> cloud;
 
   Impl(const Mesh& a, const DistanceOptions& o) : options(o) {
     const Mesh from = usable_part(a, "first mesh");
@@ -163,8 +174,8 @@ struct DistanceGauge::Impl {
     probes.points = usable_part(a, name.empty() ? "source" : name.c_str()).points;
     probes.samples = probes.points.size();
     box = bounding_box(probes.points);
-    for (const Vec3& p : probes.points) cloud.insert({p.x(), p.y(), p.z()});
-    cloud.build();  // before the threads: a lazy build is not safe
+    cloud = std::make_unique<PointTree>(3, points);
+    cloud->buildIndex();
   }
 };
 
@@ -181,7 +192,7 @@ Distances DistanceGauge::measure_to(const Mesh& b) const {
   const Probes back = sample_surface(to, impl_->options);
   return combine(
       there,
-      impl_->mesh ? measure_to_mesh(back, *impl_->mesh) : measure_to_cloud(back, impl_->cloud),
+      impl_->mesh ? measure_to_mesh(back, *impl_->mesh) : measure_to_cloud(back, *impl_->cloud),
       impl_->box);
 }
 
