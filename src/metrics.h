@@ -12,6 +12,8 @@ struct Validity {
   int vertices = 0, faces = 0;  ///< as given, before welding
   int polygons = 0;  ///< maximal connected sets of coplanar faces (exactly given by the caller, or
                      ///< found within 1e-4 m / 0.1°)
+  double least_width = 0;  ///< metres, of the narrowest polygon: twice its area over its perimeter,
+                           ///< which is a long strip's width; 0: no polygon
   bool is_watertight = false;  ///< every edge is used exactly once in each direction, vertices
                                ///< welded at equal coordinates first; no face collapses in it
   bool is_manifold =

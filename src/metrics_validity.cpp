@@ -161,17 +161,16 @@ FaceShape face_shape(const Welded& m, const Face& f) {
   return shape;
 }
 
-/// Grown from the largest face left, every face judged against the seed's plane, so that a gently
-/// curved surface does not count as one polygon.
-int count_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
-                   const std::vector<FaceShape>& shapes) {
-  const auto neighbours = face_neighbours(m, uses);
+/// Per face the number of its polygon, −1: degenerate. Grown from the largest face left, every face
+/// judged against the seed's plane, so that a gently curved surface does not count as one polygon.
+std::vector<int> find_polygons(const Welded& m, const std::vector<std::array<int, 3>>& neighbours,
+                               const std::vector<FaceShape>& shapes) {
   const double min_cos = std::cos(kCoplanarAngleDeg * M_PI / 180);
   std::vector<int> order(m.faces.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int i, int j) { return shapes[i].area > shapes[j].area; });
-  std::vector<char> is_taken(m.faces.size(), 0);
+  std::vector<int> polygon(m.faces.size(), -1);
   const auto is_coplanar = [&](int seed, int face) {
     const double cos = shapes[seed].normal.dot(shapes[face].normal);
     if (cos < (shapes[face].height < kReliableHeight ? 0.0 : min_cos)) return false;
@@ -183,21 +182,43 @@ int count_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
   };
   int polygons = 0;
   for (int seed : order) {
-    if (is_taken[seed] || shapes[seed].area == 0) continue;  // a degenerate face is no polygon
-    ++polygons;
+    if (polygon[seed] >= 0 || shapes[seed].area == 0) continue;  // a degenerate face is no polygon
     std::vector<int> stack = {seed};
-    is_taken[seed] = 1;
+    polygon[seed] = polygons;
     while (!stack.empty()) {
       const int face = stack.back();
       stack.pop_back();
       for (int next : neighbours[face])
-        if (next >= 0 && !is_taken[next] && is_coplanar(seed, next)) {
-          is_taken[next] = 1;
+        if (next >= 0 && polygon[next] < 0 && is_coplanar(seed, next)) {
+          polygon[next] = polygons;
           stack.push_back(next);
         }
     }
+    ++polygons;
   }
-  return polygons;
+  return polygon;
+}
+
+void measure_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
+                      const std::vector<FaceShape>& shapes, Validity& v) {
+  const auto neighbours = face_neighbours(m, uses);
+  const std::vector<int> polygon = find_polygons(m, neighbours, shapes);
+  v.polygons = polygon.empty() ? 0 : *std::max_element(polygon.begin(), polygon.end()) + 1;
+  std::vector<double> area(v.polygons, 0), perimeter(v.polygons, 0);
+  for (std::size_t f = 0; f < polygon.size(); ++f) {
+    if (polygon[f] < 0) continue;
+    area[polygon[f]] += shapes[f].area;
+    for (int side = 0; side < 3; ++side) {
+      const int next = neighbours[f][side];
+      if (next < 0 || polygon[next] != polygon[f])
+        perimeter[polygon[f]] +=
+            (m.points[m.faces[f][side]] - m.points[m.faces[f][(side + 1) % 3]]).norm();
+    }
+  }
+  for (int p = 0; p < v.polygons; ++p) {
+    const double width = 2 * area[p] / perimeter[p];
+    if (p == 0 || width < v.least_width) v.least_width = width;
+  }
 }
 
 std::int64_t count_intersecting(const Welded& m, const std::vector<std::pair<int, int>>& pairs) {
@@ -252,7 +273,7 @@ Validity check_validity(const Mesh& mesh, bool check_self_intersections) {
   count_edges(uses, v);
   v.nonmanifold_vertices = count_nonmanifold_vertices(welded, uses);
   v.components = count_components(welded, uses);
-  v.polygons = count_polygons(welded, uses, shapes);
+  measure_polygons(welded, uses, shapes, v);
   v.volume = signed_volume({welded.points, welded.faces});
   const bool has_faces = !welded.faces.empty();
   v.is_manifold = has_faces && v.nonmanifold_edges == 0 && v.nonmanifold_vertices == 0;

@@ -101,6 +101,16 @@ TEST_CASE("a house has seven polygons, a sphere one for each face") {
   CHECK(check_validity(square(5, 1, 7)).polygons == 1);
 }
 
+TEST_CASE("the least width is a long strip's width, whatever its triangles") {
+  CHECK(check_validity(unit_box()).least_width == Approx(0.5));  // 2 · 1 / 4
+  Mesh strip = square(1, 0, 20);
+  for (Vec3& v : strip.vertices) v = {100 * v.x(), 0.01 * v.y(), 0};
+  CHECK(check_validity(strip).least_width == Approx(0.01).epsilon(1e-3));
+  const Mesh slab = test::box_mesh({0, 0, 0}, {10, 10, 0.002});
+  CHECK(check_validity(slab).least_width == Approx(0.002).epsilon(1e-3));
+  CHECK(check_validity({}).least_width == 0);
+}
+
 TEST_CASE("a bent strip is not one polygon though neighbours nearly agree") {
   Mesh m = square(10, 0, 100);
   for (Vec3& v : m.vertices) v.z() = 0.004 * v.x() * v.x();  // 0.05° from one column to the next

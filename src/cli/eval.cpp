@@ -2,6 +2,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "../error.h"
+#include "../light_field.h"
 #include "../metrics.h"
 #include "../parallel.h"
 #include "cli.h"
@@ -14,8 +16,17 @@ struct EvalArguments {
   std::string reference, model;
   ReadOptions read;
   DistanceOptions distance;
+  bool has_lfd = false;
   int threads = 0;
 };
+
+int light_fields_apart(const Source& reference, const Source& model) {
+  for (const Source* s : {&reference, &model})
+    if (!s->is_mesh())
+      throw Error(Stage::kInput, s->name, "points have no silhouette: --lfd compares two meshes");
+  return light_field_distance(describe_light_fields(reference.mesh),
+                              describe_light_fields(model.mesh));
+}
 
 int eval(const EvalArguments& a) {
   limit_threads(a.threads);
@@ -23,13 +34,14 @@ int eval(const EvalArguments& a) {
   const Source model = read_single(a.model, a.read);
   const Validity validity = check_validity(model.mesh);
   const Distances d = measure_distances(reference, model.mesh, a.distance);
-  const nlohmann::ordered_json json{
+  nlohmann::ordered_json json{
       {"vertices", validity.vertices},
       {"faces", validity.faces},
       {"polygons", validity.polygons},
       {"watertight", validity.is_watertight},
       {"manifold", validity.is_manifold},
       {"self_intersections", validity.self_intersections},
+      {"least_width", validity.least_width},
       {"boundary_edges", validity.boundary_edges},
       {"nonmanifold_edges", validity.nonmanifold_edges},
       {"nonmanifold_vertices", validity.nonmanifold_vertices},
@@ -41,6 +53,7 @@ int eval(const EvalArguments& a) {
       {"mean_distance_back", d.mean_b_to_a},
       {"rms_distance", d.rms_a_to_b},
       {"samples", a.distance.samples}};
+  if (a.has_lfd) json["light_field_distance"] = light_fields_apart(reference, model);
   std::printf("%s\n", json.dump(2).c_str());
   return 0;
 }
@@ -57,6 +70,8 @@ Run add_eval(CLI::App& app) {
       ->check(CLI::Range(1, 100000000));
   app.add_option("--seed", a->distance.seed, "of the samples")
       ->check(CLI::Range(0.0, 9007199254740992.0));
+  app.add_flag("--lfd", a->has_lfd,
+               "also the light field distance: how alike both look from all sides, 0 = the same");
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(CLI::Range(0, 4096));
   return [a] { return eval(*a); };
