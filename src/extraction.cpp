@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -55,7 +56,7 @@ struct Attempt {
 
 /// The inside; escaping rays count less where that explains clearly more of the outlines; empty
 /// when nothing is inside at all.
-std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const RayScene& rays,
+std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& sight,
                         const ExtractionOptions& options, Attempt& attempt) {
   const Partition& partition = attempt.partition;
   const std::vector<char> is_forced = forced_outside(partition, plan);
@@ -63,11 +64,11 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const Ray
   std::vector<char> is_inside;
   if (options.is_paper) {
     is_inside = threshold_cells(
-        gather_evidence(partition, rays, {.is_paper = true, .nr = options.nr}), is_forced);
+        gather_evidence(partition, sight, {.is_paper = true, .nr = options.nr}), is_forced);
     return keep_largest_components(partition, is_inside, least_share) ? is_inside
                                                                       : std::vector<char>();
   }
-  attempt.evidence = gather_evidence(partition, rays, {.nr = options.nr});
+  attempt.evidence = gather_evidence(partition, sight, {.nr = options.nr});
   const Evidence& evidence = attempt.evidence;
   measure_coverage(partition, planes, plan.input, attempt.evidence);
   double best = -1;
@@ -88,12 +89,12 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, const Ray
                                                                     : std::vector<char>();
 }
 
-Attempt try_plan(const CuttingPlan& plan, const Planes& planes, const RayScene& rays,
+Attempt try_plan(const CuttingPlan& plan, const Planes& planes, Sight& sight,
                  const ExtractionOptions& options) {
   Attempt attempt;
   attempt.partition = partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
   attempt.warnings = attempt.partition.warnings;
-  attempt.is_inside = label(plan, planes, rays, options, attempt);
+  attempt.is_inside = label(plan, planes, sight, options, attempt);
   if (!attempt.is_inside.empty())
     attempt.mesh =
         extract_surface(attempt.partition, attempt.is_inside, options.is_paper, &attempt.mended);
@@ -155,14 +156,14 @@ CuttingPlan leaner(const CuttingPlan& plan, const Attempt& attempt,
 
 /// Planes that only slivers or uncovered facets lie on are left out and the rest is cut anew, while
 /// the other planes keep their surface.
-void prune(CuttingPlan plan, const Planes& planes, const RayScene& rays,
-           const ExtractionOptions& options, Attempt& best) {
+void prune(CuttingPlan plan, const Planes& planes, Sight& sight, const ExtractionOptions& options,
+           Attempt& best) {
   for (int round = 0; round < kPruningRounds; ++round) {
     const std::vector<double> before = explained_areas(best, planes.planes.size());
     const std::vector<char> is_worthwhile = worthwhile_planes(best, before);
     CuttingPlan lean = leaner(plan, best, is_worthwhile);
     if (lean.planes.size() == plan.planes.size()) return;
-    Attempt next = try_plan(lean, planes, rays, options);
+    Attempt next = try_plan(lean, planes, sight, options);
     if (next.is_inside.empty() || next.warnings.size() > best.warnings.size()) return;
     const std::vector<double> after = explained_areas(next, planes.planes.size());
     double wanted = 0, reached = 0;
@@ -179,13 +180,13 @@ void prune(CuttingPlan plan, const Planes& planes, const RayScene& rays,
 
 }  // namespace
 
-Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
-                         const RayScene& rays, const ExtractionOptions& options) {
-  const CuttingPlan plan = plan_cuts(planes, layer_planes, rays, options);
-  Attempt attempt = try_plan(plan, planes, rays, options);
+Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes, Sight& sight,
+                         const ExtractionOptions& options) {
+  const CuttingPlan plan = plan_cuts(planes, layer_planes, sight.rays, options);
+  Attempt attempt = try_plan(plan, planes, sight, options);
   if (attempt.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
-  if (!options.is_paper) prune(plan, planes, rays, options, attempt);
+  if (!options.is_paper) prune(plan, planes, sight, options, attempt);
   Extraction result;
   result.mesh = std::move(attempt.mesh);
   result.cells = static_cast<std::int64_t>(attempt.partition.cells.size());
@@ -210,6 +211,15 @@ PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_ins
   PolygonMesh mesh = build_surface(partition, BoundaryFinder(partition).find(is_inside));
   contract_short_edges(mesh, kShortest);
   return mesh;
+}
+
+Sight::Sight(const Planes& planes) : rays(outline_soup(planes)) {}
+
+std::size_t Sight::Hash::operator()(const Vec3& p) const {
+  std::uint64_t h = 0;
+  for (int i = 0; i < 3; ++i)
+    h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 0x9E3779B97F4A7C15ull, h ^= h >> 29;
+  return h;
 }
 
 Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle) {

@@ -81,21 +81,61 @@ Tally cast(const RayScene& rays, const Vec3& origin, const std::vector<Vec3>& di
   return {inside / n, outside / n};
 }
 
-/// Adds what one sample says of its cell.
-void add_sample(const RayScene& rays, const Vec3& origin, const std::vector<Vec3>& rings,
-                const std::vector<Vec3>& steep, double share, CellEvidence& cell) {
-  const Tally around = cast(rays, origin, rings), above = cast(rays, origin, steep);
-  const double roof = std::clamp(above.inside - above.outside, 0.0, 1.0);
-  const double escaped = 1 - around.inside - around.outside;
-  cell.seen += share * (around.inside - around.outside);
-  cell.sheltered += share * escaped * roof;
-  cell.exposed += share * escaped * (1 - roof);
+/// Asks what points see, with the directions of the rules.
+class Voter {
+ public:
+  Voter(const Sight& sight, const VoteOptions& options)
+      : sight_(sight),
+        is_paper_(options.is_paper),
+        around_(options.is_paper ? sphere_directions(options.nr)
+                                 : ring_directions(options.nr, kElevations)),
+        steep_(ring_directions(std::max(8, options.nr / 5), kSteep)) {}
+
+  Vote vote(const Vec3& point) const {
+    const auto known = sight_.votes.find(point);
+    if (known != sight_.votes.end()) return known->second;
+    const Tally around = cast(sight_.rays, point, around_);
+    if (is_paper_) return {2 * around.inside - 1, 0, 0};
+    const Tally above = cast(sight_.rays, point, steep_);
+    const double roof = std::clamp(above.inside - above.outside, 0.0, 1.0);
+    const double escaped = 1 - around.inside - around.outside;
+    return {around.inside - around.outside, escaped * roof, escaped * (1 - roof)};
+  }
+
+ private:
+  const Sight& sight_;
+  bool is_paper_;
+  std::vector<Vec3> around_, steep_;
+};
+
+/// The mean vote of each cell's points; what was seen is kept in `sight`.
+std::vector<Vote> vote_on_cells(const Partition& partition, Sight& sight,
+                                const VoteOptions& options) {
+  const std::vector<std::vector<int>> vertices = cell_vertices(partition);
+  const Voter voter(sight, options);
+  std::vector<std::vector<std::pair<Vec3, Vote>>> seen(partition.cells.size());
+  const auto ask = [&](std::size_t cell) {
+    const std::vector<Vec3> points =
+        options.is_paper ? std::vector<Vec3>{partition.cells[cell].centroid}
+                         : sample_cell(partition, static_cast<int>(cell), vertices[cell]);
+    for (const Vec3& p : points) seen[cell].emplace_back(p, voter.vote(p));
+  };
+  parallel_for(seen.size(), ask, 16);
+  std::vector<Vote> mean(seen.size());
+  for (std::size_t cell = 0; cell < seen.size(); ++cell)
+    for (const auto& [point, vote] : seen[cell]) {
+      const double share = 1.0 / static_cast<double>(seen[cell].size());
+      mean[cell].seen += share * vote.seen;
+      mean[cell].sheltered += share * vote.sheltered;
+      mean[cell].exposed += share * vote.exposed;
+      sight.votes.emplace(point, vote);
+    }
+  return mean;
 }
 
 }  // namespace
 
-Evidence gather_evidence(const Partition& partition, const RayScene& rays,
-                         const VoteOptions& options) {
+Evidence gather_evidence(const Partition& partition, Sight& sight, const VoteOptions& options) {
   const std::size_t n = partition.cells.size();
   Evidence e;
   e.area.resize(partition.pieces.size());
@@ -115,26 +155,7 @@ Evidence gather_evidence(const Partition& partition, const RayScene& rays,
   }
   for (std::size_t c = 0; c < n; ++c)
     e.weight[c] = std::min(e.weight[c], 2 * partition.cells[c].volume / kThinCell);
-  const std::vector<Vec3> sphere = sphere_directions(options.nr);
-  const std::vector<Vec3> rings = ring_directions(options.nr, kElevations);
-  const std::vector<Vec3> steep = ring_directions(std::max(8, options.nr / 5), kSteep);
-  const std::vector<std::vector<int>> vertices = cell_vertices(partition);
-  e.cells.resize(n);
-  parallel_for(
-      n,
-      [&](std::size_t cell) {
-        if (options.is_paper) {
-          const double inside = cast(rays, partition.cells[cell].centroid, sphere).inside;
-          e.cells[cell] = {.seen = 2 * inside - 1, .sheltered = 0, .exposed = 0};
-          return;
-        }
-        const std::vector<Vec3> samples =
-            sample_cell(partition, static_cast<int>(cell), vertices[cell]);
-        for (const Vec3& p : samples)
-          add_sample(rays, p, rings, steep, 1.0 / static_cast<double>(samples.size()),
-                     e.cells[cell]);
-      },
-      16);
+  e.cells = vote_on_cells(partition, sight, options);
   return e;
 }
 
@@ -272,7 +293,7 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
   const long n = static_cast<long>(partition.cells.size()), source = n, sink = n + 1;
   std::vector<Capacity> for_inside(n), for_outside(n);
   for (long c = 0; c < n; ++c) {
-    const CellEvidence& cell = evidence.cells[c];
+    const Vote& cell = evidence.cells[c];
     const double v = (cell.seen + kRoofVote * cell.sheltered - options.escape * cell.exposed) *
                      evidence.weight[c];
     for_inside[c] = whole(v), for_outside[c] = whole(-v);

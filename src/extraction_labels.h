@@ -10,16 +10,9 @@
 
 namespace colod {
 
-/// Shares of the rays of one cell.
-struct CellEvidence {
-  double seen = 0;  ///< valid hits minus others, −1..1; paper: 2 × share of valid hits − 1
-  double sheltered = 0;  ///< that meet nothing although a roof stands above, 0..1
-  double exposed = 0;    ///< that meet nothing, with nothing above, 0..1
-};
-
 /// What speaks for and against each cell.
 struct Evidence {
-  std::vector<CellEvidence> cells;
+  std::vector<Vote> cells;
   std::vector<double> weight;  ///< per cell, m²: its surface, less for thin cells
   std::vector<double> area;    ///< per piece, m²
   std::vector<double>
@@ -33,8 +26,7 @@ struct VoteOptions {
 };
 
 /// Rays from the cells' centroids (and further points of large cells). Parallel over cells.
-Evidence gather_evidence(const Partition& partition, const RayScene& rays,
-                         const VoteOptions& options);
+Evidence gather_evidence(const Partition& partition, Sight& sight, const VoteOptions& options);
 
 /// Per piece the share that the outlines of `planes` cover; `input[i]` is the plane of
 /// partition.cuts[i], −1 none.

@@ -53,11 +53,11 @@ std::vector<int> cutting_order(const Building& b, int k, const Options& o) {
   return order;
 }
 
-void extract(Building& b, Layer& layer, const RayScene& rays, const Options& o) {
+void extract(Building& b, Layer& layer, Sight& sight, const Options& o) {
   try {
     const std::vector<int> planes = cutting_order(b, layer.layer, o);
     Extraction result =
-        extract_layer(b.planes, planes, rays, {.is_paper = is_paper(o), .nr = o.nr});
+        extract_layer(b.planes, planes, sight, {.is_paper = is_paper(o), .nr = o.nr});
     layer.mesh = std::move(result.mesh);
     for (const std::string& w : result.warnings)
       b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
@@ -163,14 +163,14 @@ void analyze_scene(Scene& scene, const Options& options) {
 void mesh_building(Building& b, const Options& options) {
   if (!b.failure.empty()) return;
   try {
-    const RayScene rays(outline_soup(b.planes));
+    Sight sight(b.planes);
     for (int k = 0; k < options.layers; ++k) {
       Layer layer;
       layer.layer = k;
       layer.segments = static_cast<int>(std::count_if(
           b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
       Stopwatch watch(b.timings.extraction);
-      extract(b, layer, rays, options);
+      extract(b, layer, sight, options);
       b.layers.push_back(std::move(layer));
     }
     keep_chain_sound(b, options);

@@ -154,8 +154,8 @@ TEST_CASE("a concave flat roof alone gets walls under all its borders") {
   Planes planes = planes_of_mesh(without_walls(l_shape()));
   std::erase_if(planes.planes, [](const Plane& p) { return p.normal.z() < 0; });
   planes.planes.front().outline.rings = {ring_of(planes.planes.front().outline)};
-  const Extraction e =
-      extract_layer(planes, all_planes(planes), RayScene(outline_soup(planes)), {});
+  Sight sight(planes);
+  const Extraction e = extract_layer(planes, all_planes(planes), sight);
   expect_solid(e.mesh, 4 * 64);
   expect_counts(e.mesh, 12, 8, 20);
 }
@@ -174,11 +174,11 @@ TEST_CASE("a dormer and an annex stay on their house") {
 
 TEST_CASE("a layer of few planes still gives a body") {
   const Planes planes = planes_of_mesh(gable_house(10, 6, 4, 3));
-  const RayScene rays(outline_soup(planes));
+  Sight sight(planes);
   for (std::size_t n = 1; n <= planes.planes.size(); ++n) {
     std::vector<int> layer = all_planes(planes);
     layer.resize(n);
-    const PolygonMesh mesh = extract_layer(planes, layer, rays).mesh;
+    const PolygonMesh mesh = extract_layer(planes, layer, sight).mesh;
     CHECK(check(mesh).is_closed);
     CHECK(check(mesh).is_fan);
     CHECK(signed_volume(mesh.mesh()) > 1);
@@ -326,6 +326,20 @@ TEST_CASE("a pinched boundary is seen") {
   CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 0, 0}}))).empty());
 }
 
+TEST_CASE("a layer is the same whatever was looked at before") {
+  const Planes planes = planes_of_mesh(join(l_shape(), box_mesh({1, 1, 4}, {3, 3, 6})));
+  const std::vector<int> all = all_planes(planes), few(all.begin(), all.begin() + 6);
+  Sight fresh(planes), used(planes);
+  extract_layer(planes, few, used);
+  const std::size_t known = used.votes.size();
+  CHECK(known > 0);
+  const PolygonMesh once = extract_layer(planes, all, fresh).mesh;
+  const PolygonMesh after = extract_layer(planes, all, used).mesh;
+  CHECK(once.vertices == after.vertices);
+  CHECK(once.triangles == after.triangles);
+  CHECK(used.votes.size() < known + fresh.votes.size());  // some points were asked in both
+}
+
 TEST_CASE("one and two threads give the same mesh") {
   const auto run = [](int threads) {
     limit_threads(threads);
@@ -345,7 +359,8 @@ TEST_CASE("one wall alone becomes a thin body, no plane is an error") {
   wall.faces = {{0, 1, 2}, {0, 2, 3}};
   const Extraction e = extract(wall);
   expect_solid(e.mesh, 6 * 4 * 0.5);
-  CHECK_THROWS_AS(extract_layer({}, {}, RayScene(Mesh()), {}), Error);
+  Sight nothing{Planes()};
+  CHECK_THROWS_AS(extract_layer({}, {}, nothing), Error);
 }
 
 TEST_CASE("a detached annex is kept, a small shed is not") {

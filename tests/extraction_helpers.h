@@ -63,7 +63,8 @@ inline std::vector<int> all_planes(const Planes& planes) {
 
 inline Extraction extract(const Mesh& mesh, const ExtractionOptions& options = {}) {
   const Planes planes = planes_of_mesh(mesh);
-  return extract_layer(planes, all_planes(planes), RayScene(outline_soup(planes)), options);
+  Sight sight(planes);
+  return extract_layer(planes, all_planes(planes), sight, options);
 }
 
 /// Closed, 2-manifold and outward after welding equal coordinates; no diagonal used twice, no
