@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "mesh_io_formats.h"
+#include "parallel.h"
 #include "stopwatch.h"
 #include "union_find.h"
 
@@ -299,45 +300,83 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
   return usable;
 }
 
-/// Names differ even where upper and lower case do not; the later one by path and place changes.
-void make_unique(std::vector<Source>& sources) {
-  const auto by_name = [](const Source& a, const Source& b) {
+/// One building of one file.
+struct Entry {
+  std::string path, name;
+  std::size_t file, place;  ///< place in its file
+};
+
+/// Sorts by name and path; names differ even where upper and lower case do not: the later one by
+/// path and place changes.
+void make_unique(std::vector<Entry>& entries) {
+  const auto by_name = [](const Entry& a, const Entry& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
   };
-  std::stable_sort(sources.begin(), sources.end(), by_name);
+  std::stable_sort(entries.begin(), entries.end(), by_name);
   std::set<std::string> used;
-  for (const Source& s : sources) used.insert(lower(s.name));
+  for (const Entry& e : entries) used.insert(lower(e.name));
   std::set<std::string> given;
-  for (Source& s : sources) {
-    const std::string base = s.name;
-    for (int i = 2; !given.insert(lower(s.name)).second; ++i) do
-        s.name = base + "_" + std::to_string(i);
-      while (used.contains(lower(s.name)) && ++i);
+  for (Entry& e : entries) {
+    const std::string base = e.name;
+    for (int i = 2; !given.insert(lower(e.name)).second; ++i) do
+        e.name = base + "_" + std::to_string(i);
+      while (used.contains(lower(e.name)) && ++i);
   }
-  std::stable_sort(sources.begin(), sources.end(), by_name);
 }
 
 }  // namespace
 
-ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options) {
-  ReadResult result;
-  for (const std::string& path : list_files(inputs)) {
+Inventory take_inventory(const std::vector<std::string>& inputs, const ReadOptions& options) {
+  const std::vector<std::string> paths = list_files(inputs);
+  std::vector<std::vector<std::string>> found(paths.size());
+  std::vector<std::string> problem(paths.size());
+  parallel_for(paths.size(), [&](std::size_t i) {
     try {
-      double seconds = 0;
-      std::vector<Source> sources;
-      {
-        Stopwatch watch(seconds);
-        sources = read_file(path, options);
-      }
-      for (Source& s : sources) {
-        s.read_seconds = seconds;
-        result.sources.push_back(std::move(s));
-      }
+      for (const Source& s : read_file(paths[i], options)) found[i].push_back(s.name);
     } catch (const Error& e) {
-      result.failures.push_back({path, std::string(e.what()).substr(e.item.size() + 2)});
+      problem[i] = std::string(e.what()).substr(e.item.size() + 2);
     }
+  });
+  Inventory inventory;
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (found[i].empty()) {
+      inventory.failures.push_back({paths[i], problem[i]});
+      continue;
+    }
+    for (std::size_t place = 0; place < found[i].size(); ++place)
+      entries.push_back({paths[i], found[i][place], inventory.files.size(), place});
+    inventory.files.push_back({paths[i], std::move(found[i])});
   }
-  make_unique(result.sources);
+  make_unique(entries);
+  for (const Entry& e : entries) inventory.files[e.file].names[e.place] = e.name;
+  return inventory;
+}
+
+std::vector<Source> read_file(const InputFile& file, const ReadOptions& options) {
+  double seconds = 0;
+  std::vector<Source> sources;
+  {
+    Stopwatch watch(seconds);
+    sources = read_file(file.path, options);
+  }
+  if (sources.size() != file.names.size())
+    mesh_io::fail(file.path, "changed while it was being worked on");
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    sources[i].name = file.names[i];
+    sources[i].read_seconds = seconds;
+  }
+  return sources;
+}
+
+ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options) {
+  Inventory inventory = take_inventory(inputs, options);
+  ReadResult result;
+  result.failures = std::move(inventory.failures);
+  for (const InputFile& file : inventory.files)
+    for (Source& s : read_file(file, options)) result.sources.push_back(std::move(s));
+  std::sort(result.sources.begin(), result.sources.end(),
+            [](const Source& a, const Source& b) { return a.name < b.name; });
   return result;
 }
 

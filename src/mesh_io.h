@@ -34,6 +34,31 @@ struct ReadResult {
   std::vector<ReadFailure> failures;
 };
 
+/// A file that could be read and the names of the buildings in it, in its own order.
+struct InputFile {
+  std::string path;
+  std::vector<std::string> names;  ///< unique among all files
+};
+
+struct Inventory {
+  std::vector<InputFile> files;
+  std::vector<ReadFailure> failures;
+
+  std::size_t building_count() const {
+    std::size_t count = 0;
+    for (const InputFile& file : files) count += file.names.size();
+    return count;
+  }
+};
+
+/// What read_sources would read, without keeping it: every file is read once to learn what it
+/// holds. Files are read in parallel.
+Inventory take_inventory(const std::vector<std::string>& inputs, const ReadOptions& options = {});
+
+/// The buildings of one file of an inventory, named as there. Throws Error{kInput} when the file
+/// cannot be read any more or no longer holds as many.
+std::vector<Source> read_file(const InputFile& file, const ReadOptions& options = {});
+
 /// Reads every INPUT: a file, or a folder (each supported file in it, not recursive, sorted by
 /// name). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB (Draco too),
 /// XYZ/PWN points. Validates: coordinates finite (faces that use bad ones are dropped with a

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <mutex>
+#include <tuple>
 
-#include "error.h"
 #include "parallel.h"
 #include "stopwatch.h"
 
@@ -108,6 +108,21 @@ void measure(const DistanceGauge& source, Layer& layer) {
   layer.geometric_error = layer.distances.a_to_b;
 }
 
+/// Where the buildings of each file stand in the scene, which is sorted by name.
+std::vector<std::vector<std::size_t>> positions_by_name(const Inventory& inventory) {
+  std::vector<std::tuple<std::string, std::size_t, std::size_t>> order;  // name, file, place in it
+  std::vector<std::vector<std::size_t>> positions(inventory.files.size());
+  for (std::size_t f = 0; f < positions.size(); ++f) {
+    positions[f].resize(inventory.files[f].names.size());
+    for (std::size_t i = 0; i < positions[f].size(); ++i)
+      order.emplace_back(inventory.files[f].names[i], f, i);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    positions[std::get<1>(order[k])][std::get<2>(order[k])] = k;
+  return positions;
+}
+
 }  // namespace
 
 bool Building::has_failed() const {
@@ -115,9 +130,18 @@ bool Building::has_failed() const {
                                          [](const Layer& l) { return !l.failure.empty(); });
 }
 
-Building segment_building(Source source, const Options& options) {
+Counts count(const Building& b) {
+  const std::vector<Vec3>& points =
+      b.source.is_mesh() ? b.source.mesh.vertices : b.source.cloud.points;
+  return {points.size(), b.source.mesh.faces.size(), b.planes.planes.size(),
+          bounding_box(points).diagonal()};
+}
+
+Building segment_building(Turn turn, const Options& options) {
   Building b;
+  Source& source = turn.source;
   try {
+    if (turn.problem) throw *turn.problem;
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
@@ -128,6 +152,7 @@ Building segment_building(Source source, const Options& options) {
     b.failure = source.name + ": " + e.what();
   }
   if (b.source.name.empty()) b.source.name = source.name, b.source.path = source.path;
+  b.counts = count(b);
   append(b.warnings, b.source.warnings);
   append(b.warnings, b.planes.warnings);
   append(b.warnings, b.segments.warnings);
@@ -188,28 +213,65 @@ void mesh_building(Building& b, const Options& options) {
   }
 }
 
-Scene build_scene(ReadResult input, const Options& options, const Progress& progress) {
+void for_each_source(const Inventory& inventory, const Reader& read,
+                     const std::function<void(Turn)>& body) {
+  const std::vector<std::vector<std::size_t>> positions = positions_by_name(inventory);
+  parallel_for(inventory.files.size(), [&](std::size_t f) {
+    const InputFile& file = inventory.files[f];
+    std::vector<Source> sources(file.names.size());
+    std::optional<Error> problem;
+    try {
+      sources = read(f);
+    } catch (const Error& e) {
+      problem = e;
+      for (std::size_t i = 0; i < sources.size(); ++i)
+        sources[i].name = file.names[i], sources[i].path = file.path;
+    }
+    parallel_for(sources.size(), [&](std::size_t i) {
+      body({std::move(sources[i]), positions[f][i], problem});
+    });
+  });
+}
+
+Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
+                  Depot& depot, const Progress& progress) {
   Scene scene;
-  scene.failures = std::move(input.failures);
-  scene.buildings.resize(input.sources.size());
+  scene.failures = inventory.failures;
+  scene.buildings.resize(inventory.building_count());
   std::mutex mutex;
-  const int total = static_cast<int>(input.sources.size());
   int done = 0;
   const auto report = [&](const Building& b, const char* stage) {
     const std::lock_guard lock(mutex);
-    if (progress) progress(b.source.name, stage, ++done, total);
+    if (progress) progress(b.source.name, stage, ++done, static_cast<int>(scene.buildings.size()));
   };
-  parallel_for(scene.buildings.size(), [&](std::size_t i) {
-    scene.buildings[i] = segment_building(std::move(input.sources[i]), options);
-    report(scene.buildings[i], "segments");
+  for_each_source(inventory, read, [&](Turn turn) {
+    Building& b = scene.buildings[turn.position];
+    b = segment_building(std::move(turn), options);
+    depot.put(b);
+    report(b, "segments");
   });
   analyze_scene(scene, options);
   done = 0;
   parallel_for(scene.buildings.size(), [&](std::size_t i) {
-    mesh_building(scene.buildings[i], options);
-    report(scene.buildings[i], "layers");
+    Building& b = scene.buildings[i];
+    depot.get(b);
+    mesh_building(b, options);
+    depot.drop(b);
+    report(b, "layers");
   });
   return scene;
+}
+
+Scene build_scene(ReadResult input, const Options& options) {
+  Inventory inventory{{}, std::move(input.failures)};
+  for (const Source& s : input.sources) inventory.files.push_back({s.path, {s.name}});
+  const Reader take = [&](std::size_t i) {
+    std::vector<Source> one;
+    one.push_back(std::move(input.sources[i]));
+    return one;
+  };
+  Depot memory;
+  return build_scene(inventory, take, options, memory);
 }
 
 }  // namespace colod

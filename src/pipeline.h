@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "clustering.h"
+#include "error.h"
 #include "extraction.h"
 #include "frame.h"
 #include "mesh_io.h"
@@ -33,10 +35,18 @@ struct Timings {
          measure = 0, export_ = 0;
 };
 
+/// What the report says of data that may have been let go.
+struct Counts {
+  std::size_t vertices = 0, faces = 0;  ///< of the source; points count as vertices
+  std::size_t planes = 0;
+  double diagonal = 0;  ///< metres, of the source's box
+};
+
 /// All that is known of one building.
 struct Building {
   Source source;  ///< in its local frame
-  Frame frame;    ///< local → world
+  Counts counts;
+  Frame frame;  ///< local → world
   Planes planes;
   Segments segments;
   std::vector<Descriptor> descriptors;  ///< per segment
@@ -57,12 +67,42 @@ struct Scene {
   double coanalysis_seconds = 0;
 };
 
+Counts count(const Building& building);
+
+/// Where source and planes of the buildings lie while the scene is analysed. This one leaves them
+/// in memory; store.h has one that does not, so that memory does not grow with the scene. Called
+/// from several threads.
+class Depot {
+ public:
+  virtual ~Depot() = default;
+  /// After rooms 2 to 5: may take them away. Name, path, segments and counts stay.
+  virtual void put(Building&) {}
+  /// Before room 8: brings them back.
+  virtual void get(Building&) {}
+  /// After the measures: they are needed no more.
+  virtual void drop(Building&) {}
+};
+
 /// Called from one thread at a time when a building has passed a stage.
 using Progress =
     std::function<void(const std::string& building, const char* stage, int done, int total)>;
 
+/// Reads the buildings of file i of an inventory. May throw Error.
+using Reader = std::function<std::vector<Source>(std::size_t)>;
+
+/// A building whose turn has come.
+struct Turn {
+  Source source;                 ///< only name and path when it could not be read
+  std::size_t position = 0;      ///< in the scene, which is sorted by name
+  std::optional<Error> problem;  ///< why it could not be read
+};
+
+/// Reads file by file, several at a time, and hands over each building; `body` runs in parallel.
+void for_each_source(const Inventory& inventory, const Reader& read,
+                     const std::function<void(Turn)>& body);
+
 /// Rooms 2 to 5 for one building. Failures are recorded in the building, nothing is thrown.
-Building segment_building(Source source, const Options& options);
+Building segment_building(Turn turn, const Options& options);
 
 /// Rooms 6 and 7 over all buildings: sets layer_of_segment.
 void analyze_scene(Scene& scene, const Options& options);
@@ -70,7 +110,12 @@ void analyze_scene(Scene& scene, const Options& options);
 /// Rooms 8 and 9 and the measures for one building.
 void mesh_building(Building& building, const Options& options);
 
-/// All of it.
-Scene build_scene(ReadResult input, const Options& options, const Progress& progress = {});
+/// All of it; a file is read when its turn comes. A file that cannot be read any more leaves failed
+/// buildings.
+Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
+                  Depot& depot, const Progress& progress = {});
+
+/// All of it on sources in memory.
+Scene build_scene(ReadResult input, const Options& options);
 
 }  // namespace colod

@@ -43,18 +43,15 @@ Json layer_json(const Layer& layer) {
 }
 
 Json building_json(const Building& b) {
-  Json json{
-      {"name", b.source.name},
-      {"source", b.source.path},
-      {"vertices",
-       b.source.is_mesh() ? b.source.mesh.vertices.size() : b.source.cloud.points.size()},
-      {"faces", b.source.mesh.faces.size()},
-      {"planes", b.planes.planes.size()},
-      {"segments", b.segments.segments.size()},
-      {"prior", false},
-      {"diagonal", bounding_box(b.source.is_mesh() ? b.source.mesh.vertices : b.source.cloud.points)
-                       .diagonal()},
-      {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+  Json json{{"name", b.source.name},
+            {"source", b.source.path},
+            {"vertices", b.counts.vertices},
+            {"faces", b.counts.faces},
+            {"planes", b.counts.planes},
+            {"segments", b.segments.segments.size()},
+            {"prior", false},
+            {"diagonal", b.counts.diagonal},
+            {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
   json["layers"] = Json::array();
   for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
   json["timings"] = {{"read", b.timings.read},

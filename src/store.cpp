@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 1;  // PRAGMA user_version
+constexpr int kFormat = 2;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -609,6 +609,7 @@ Building Store::building(const std::string& name) const {
   impl_->get_planes(b);
   impl_->get_segments(b);
   impl_->get_layers(b);
+  b.counts = count(b);
   return b;
 }
 
@@ -637,6 +638,33 @@ void Store::get_coanalysis(Scene& scene) const {
     scene.coanalysis_seconds = json.value("seconds", 0.0);
     scene.selection.warnings = json.value("warnings", std::vector<std::string>{});
   });
+}
+
+// An empty name is SQLite's for a database on disk that nobody else sees.
+TemporaryStore::TemporaryStore() : store_("", true) {}
+
+void TemporaryStore::put(Building& b) {
+  {
+    const std::lock_guard lock(mutex_);
+    store_.put_segments(b, 0, "");
+  }
+  drop(b);
+}
+
+void TemporaryStore::get(Building& b) {
+  const std::lock_guard lock(mutex_);
+  Building kept = store_.building(b.source.name);
+  b.source.mesh = std::move(kept.source.mesh);
+  b.source.cloud = std::move(kept.source.cloud);
+  b.planes = std::move(kept.planes);
+}
+
+void TemporaryStore::drop(Building& b) {
+  b.source.mesh = {};
+  b.source.cloud = {};
+  b.source.face_object.clear();
+  b.source.face_object.shrink_to_fit();
+  b.planes = {};
 }
 
 std::string segments_key(const Source& source, const Options& options) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,20 @@ class Store {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// Sources and planes in a temporary database that the system's folder for such files holds and
+/// that goes away by itself. Throws Error{kOutput} where there is no room.
+class TemporaryStore : public Depot {
+ public:
+  TemporaryStore();
+  void put(Building& building) override;
+  void get(Building& building) override;
+  void drop(Building& building) override;
+
+ private:
+  std::mutex mutex_;
+  Store store_;
 };
 
 /// A key for Store::put_segments: a hash of the source's content and of the options that rooms 2 to

@@ -53,7 +53,7 @@ TEST_CASE("stages through a scene file give the report of a build in one go") {
     store.put_options(options);
     int order = 0;
     for (const auto& [name, w] : {std::pair("a", 12.0), std::pair("b", 10.0)})
-      store.put_segments(segment_building(house(name, w), options), order++,
+      store.put_segments(segment_building({house(name, w), 0, {}}, options), order++,
                          segments_key(house(name, w), options));
   }
   Store store(file.path, false);
@@ -114,4 +114,38 @@ TEST_CASE("what is no scene file is refused by name") {
       << "this is text, and long enough to be read as a header of something else entirely";
   CHECK_THROWS_AS(Store(file.path, false), Error);
   CHECK_THROWS_AS(Store("/proc/no/such/place", true), Error);
+}
+
+TEST_CASE("a scene is the same with its buildings in a temporary store") {
+  const Options options = small_options();
+  const std::vector<std::pair<std::string, double>> houses = {{"b", 10}, {"a", 12}};
+  Inventory inventory;
+  for (const auto& [name, w] : houses) inventory.files.push_back({name + ".ply", {name}});
+  inventory.files.push_back({"gone.ply", {"gone"}});
+  const Reader read = [&](std::size_t i) {
+    if (i == houses.size()) throw Error(Stage::kInput, "gone.ply", "cannot be opened");
+    std::vector<Source> one;
+    one.push_back(house(houses[i].first, houses[i].second));
+    return one;
+  };
+  Depot memory;
+  TemporaryStore disk;
+  const Scene kept = build_scene(inventory, read, options, memory);
+  const Scene parked = build_scene(inventory, read, options, disk);
+  REQUIRE(parked.buildings.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Building &a = kept.buildings[i], &b = parked.buildings[i];
+    CHECK(a.source.name == std::vector<std::string>{"a", "b", "gone"}[i]);
+    CHECK(b.source.mesh.faces.empty());
+    CHECK(b.planes.planes.empty());
+    CHECK(b.counts.faces == a.source.mesh.faces.size());
+    CHECK(b.failure == a.failure);
+    REQUIRE(a.layers.size() == b.layers.size());
+    for (std::size_t k = 0; k < a.layers.size(); ++k) {
+      CHECK(a.layers[k].mesh.vertices == b.layers[k].mesh.vertices);
+      CHECK(a.layers[k].mesh.triangles == b.layers[k].mesh.triangles);
+      CHECK(a.layers[k].geometric_error == b.layers[k].geometric_error);
+    }
+  }
+  CHECK(kept.buildings[2].failure == "gone.ply: cannot be opened");
 }

@@ -4,6 +4,7 @@
 #include "../../exporters/files.h"
 #include "../parallel.h"
 #include "../pipeline.h"
+#include "../store.h"
 #include "cli.h"
 #include "input_options.h"
 #include "output.h"
@@ -25,10 +26,12 @@ int build(const BuildArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  ReadResult input = read_sources(a.inputs, a.read);
+  const Inventory inventory = take_inventory(a.inputs, a.read);
   make_folder(a.output.out);  // fails now rather than after all the work
-  Scene scene =
-      build_scene(std::move(input), a.options, [&](auto&&... args) { log.progress(args...); });
+  TemporaryStore depot;
+  Scene scene = build_scene(
+      inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
+      a.options, depot, [&](auto&&... args) { log.progress(args...); });
   export_scene(scene, a.output);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), a.output, log);

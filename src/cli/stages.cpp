@@ -33,30 +33,33 @@ int segment(const StageArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  ReadResult input = read_sources(a.inputs, a.read);
+  const Inventory inventory = take_inventory(a.inputs, a.read);
   Scene problems;
-  problems.failures = input.failures;
-  problems.buildings.resize(input.sources.size());
+  problems.failures = inventory.failures;
+  problems.buildings.resize(inventory.building_count());
   Store store(a.scene, true);
   store.put_options(a.options);
   std::mutex mutex;
   int done = 0;
-  parallel_for(input.sources.size(), [&](std::size_t i) {
-    const std::string name = input.sources[i].name, key = segments_key(input.sources[i], a.options);
+  const auto read = [&](std::size_t file) { return read_file(inventory.files[file], a.read); };
+  for_each_source(inventory, read, [&](Turn turn) {
+    const std::size_t position = turn.position;
+    const std::string name = turn.source.name, key = segments_key(turn.source, a.options);
     bool is_there;
     {
       const std::lock_guard lock(mutex);
-      is_there = store.segments_key(name) == key;
+      is_there = !turn.problem && store.segments_key(name) == key;
     }
     Building b;
-    if (!is_there) b = segment_building(std::move(input.sources[i]), a.options);
+    if (!is_there) b = segment_building(std::move(turn), a.options);
     const std::lock_guard lock(mutex);
-    if (!is_there) store.put_segments(b, static_cast<int>(i), key);
+    if (!is_there) store.put_segments(b, static_cast<int>(position), key);
     log.progress(name, is_there ? "already there" : "segments", ++done,
-                 static_cast<int>(input.sources.size()));
-    problems.buildings[i].source.name = name;
-    problems.buildings[i].failure = b.failure;
-    problems.buildings[i].warnings = b.warnings;
+                 static_cast<int>(problems.buildings.size()));
+    Building& problem = problems.buildings[position];
+    problem.source.name = name;
+    problem.failure = b.failure;
+    problem.warnings = b.warnings;
   });
   report_problems(problems, log);
   return exit_code(problems);
