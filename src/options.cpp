@@ -45,6 +45,15 @@ const std::vector<OptionInfo>& option_table() {
   return table;
 }
 
+const char* name_of(Visibility visibility) {
+  if (visibility == Visibility::kSweep) return "sweep";
+  return visibility == Visibility::kEmbree ? "embree" : "embree-single";
+}
+
+Visibility visibility_of(const std::string& name) {
+  return name == "sweep" ? Visibility::kSweep : Visibility::kEmbree;
+}
+
 Options default_options(Rules rules) {
   Options options;
   options.rules = rules;

@@ -11,8 +11,18 @@ namespace colod {
 
 enum class Rules { kRobust, kPaper };  ///< docs/rules.md says what each changes
 
+/// What finds the first plane along each ray (docs/performance.md): Embree in packets of rays, one
+/// ray at a time (to measure against), or the sweep over the slices' outlines.
+enum class Visibility { kEmbree, kEmbreeSingle, kSweep };
+
+/// As on the command line: "embree", "sweep"; "embree-single" is for measuring only.
+const char* name_of(Visibility visibility);
+/// Anything but "sweep": Embree.
+Visibility visibility_of(const std::string& name);
+
 struct Options {
   Rules rules = Rules::kRobust;
+  Visibility visibility = Visibility::kEmbree;
   int layers = 3;           ///< l_n, 1..8
   int ns = 100;             ///< n_s: voxels along each side of the box, 8..1000; the paper has 150
   int nr = 100;             ///< n_r: rays a voxel, 4..1000

@@ -32,9 +32,11 @@ void find_segments(Building& b, const Options& o) {
                                         .min_points = o.min_points});
   }
   b.segments = build_segments(
-      b.planes, {.is_paper = is_paper(o),
-                 .alcove_area = o.alcove_area,
-                 .visibility = {.ns = o.ns, .nr = o.nr, .is_party_wall_rule = !is_paper(o)}});
+      b.planes,
+      {.is_paper = is_paper(o),
+       .alcove_area = o.alcove_area,
+       .visibility = {
+           .engine = o.visibility, .ns = o.ns, .nr = o.nr, .is_party_wall_rule = !is_paper(o)}});
   b.timings.visibility = b.segments.visibility_seconds;
   b.timings.segments = b.segments.aggregation_seconds;
   Stopwatch watch(b.timings.similarity);

@@ -12,6 +12,7 @@ using Json = nlohmann::ordered_json;
 Json parameters_json(const Options& options) {
   Json json;
   json["rules"] = options.rules == Rules::kPaper ? "paper" : "robust";
+  json["visibility"] = name_of(options.visibility);
   for (const OptionInfo& info : option_table()) {
     if (info.is_integer)
       json[info.name] = static_cast<std::int64_t>(info.get(options));

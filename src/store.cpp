@@ -192,7 +192,8 @@ struct FacetRecord {
 };
 
 Json options_json(const Options& o) {
-  Json json{{"rules", o.rules == Rules::kPaper ? "paper" : "robust"}};
+  Json json{{"rules", o.rules == Rules::kPaper ? "paper" : "robust"},
+            {"visibility", name_of(o.visibility)}};
   for (const OptionInfo& info : option_table()) json[info.name] = info.get(o);
   return json;
 }
@@ -309,6 +310,7 @@ Options Store::options() const {
   Options options;
   read_json(s.text(), impl_->path, "options", [&](const Json& json) {
     options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
+    options.visibility = visibility_of(json.value("visibility", "embree"));
     for (const OptionInfo& info : option_table()) {
       const double value = json.value(info.name, info.get(options));
       if (!(value >= info.min && value <= info.max))

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "geometry.h"
+#include "options.h"
 #include "planes.h"
 
 namespace colod {
 
 struct VisibilityOptions {
+  Visibility engine = Visibility::kEmbree;
   int ns = 150;
   int nr = 100;
   /// Stop a voxel's rays once it can neither become valid (≥ n_r/2 inside hits, or the robust party

@@ -145,7 +145,8 @@ TEST_CASE("a config file sets options, the command line wins") {
   Folder f;
   const std::string house = f.write("house.off", off(test::gable_house(12, 9, 6, 4)));
   const std::string config =
-      f.write("colod.toml", "ns = 30\nnr = 32\nlayers = 2\nmin-points = 1\nrules = \"paper\"\n");
+      f.write("colod.toml", "ns = 30\nnr = 32\nlayers = 2\nmin-points = 1\nrules = \"paper\"\n"
+              "visibility = \"sweep\"\n");
   const Result r = f.colod("build " + house + " -o " + (f / "out").string() + " --quiet --config " +
                            config + " --ns 20");
   INFO(r.err);
@@ -155,6 +156,7 @@ TEST_CASE("a config file sets options, the command line wins") {
   CHECK(p["nr"] == 32);
   CHECK(p["layers"] == 2);
   CHECK(p["rules"] == "paper");
+  CHECK(p["visibility"] == "sweep");
   CHECK(f.colod("build " + house + " -o " + (f / "out").string() + " --config " +
                 f.write("bad.toml", "nonsense = 3\n"))
             .exit_code == 2);

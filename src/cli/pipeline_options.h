@@ -45,8 +45,8 @@ inline void add_config_option(CLI::App& app) {
       ->check(CLI::ExistingFile);
 }
 
-/// --rules and every row of the option table; --rules comes first, since the others' defaults hang
-/// on it.
+/// --rules, --visibility and every row of the option table; --rules comes first, since the others'
+/// defaults hang on it.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--rules",
@@ -55,6 +55,11 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
          },
          "robust (default) or the paper's letter")
       ->check(CLI::IsMember({"robust", "paper"}));
+  app.add_option_function<std::string>(
+         "--visibility",
+         [&options](const std::string& v) { options.visibility = visibility_of(v); },
+         "what casts the rays: embree (default), or sweep, the same hits several times faster")
+      ->check(CLI::IsMember({"embree", "sweep"}));
   for (const OptionInfo& info : option_table()) {
     const auto set = [&options, &info](const double& value) {
       if (info.is_integer &&
