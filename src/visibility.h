@@ -17,7 +17,7 @@
 namespace colod {
 
 struct VisibilityOptions {
-  Visibility engine = Visibility::kEmbree;
+  Visibility engine = Visibility::kEmbree;  ///< only Embree's stop early; no result hangs on it
   int ns = 150;
   int nr = 100;
   /// Stop a voxel's rays once it can neither become valid (≥ n_r/2 inside hits, or the robust party
@@ -65,8 +65,12 @@ struct HitGrid {
 /// `is_active` (empty: all) leaves planes out; `is_reversed` (empty: none) turns planes round
 /// (Algorithm 1). `is_valid` and `hits` are those of all n_r rays with and without early_stop: hits
 /// are kept of valid voxels and of those with ≥ n_r/2 outside hits. No plane, or none active: empty
-/// box, no hits. Uses threads; the same bytes with any number. Some 10 to 20 million rays a second
-/// and core. Throws Error{kUsage} for n_s outside 1…2048 or n_r outside 1…65535.
+/// box, no hits. Uses threads; the same bytes with any number. Rays a second and core: Embree 20
+/// million, the sweep 200 million or more (docs/performance.md); but for the grid itself, the sweep
+/// holds at most 256 MiB and 8 MiB a thread, for n_s n_r above 2 million the codes of two rows
+/// (4 n_s n_r bytes). Engines agree but for rays within rounding of an outline's edge. Throws
+/// Error{kUsage} for n_s outside 1…2048 or n_r outside 1…65535; sweep: Error{kProcess} when more
+/// than 32767 planes cross one slice.
 HitGrid cast_visibility(const Planes& planes, const VisibilityOptions& options = {},
                         const std::vector<char>& is_active = {},
                         const std::vector<char>& is_reversed = {});

@@ -15,6 +15,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 
 #include "error.h"
 #include "parallel.h"
@@ -43,7 +45,7 @@ constexpr std::size_t kCodeBytes = std::size_t{8} << 20;
 /// Bytes of orders held for the whole run; beyond, every task makes its own.
 constexpr std::size_t kOrderBytes = std::size_t{256} << 20;
 /// Slices that a task takes at once, with one look at each order.
-constexpr int kSlices = 2;
+constexpr std::size_t kSlices = 2;
 /// Of a plane's pieces in a slice: those that are off its common line by more than the rounding of
 /// corners explains, in units of the box's radius, are not joined.
 constexpr double kStraight = 0x1p-20;
@@ -297,12 +299,13 @@ class Sweeper {
   /// Fills the pieces of some slices' rows: those of slice z are at z × bands() + band.
   void cast(std::size_t slab, std::size_t band, std::vector<Piece>& pieces) const {
     const std::size_t first_row = band * rows_, rows = std::min(rows_, size() - first_row);
-    const std::size_t z0 = slab * kSlices, slices = std::min<std::size_t>(kSlices, size() - z0);
-    Work work;
+    const std::size_t z0 = slab * kSlices, slices = std::min(kSlices, size() - z0);
+    std::unique_ptr<Work> lent = lend();
+    Work& work = *lent;
     work.stride = kLine * ((size() * rows + kLine - 1) / kLine | 1);
-    for (std::size_t z = z0; z < z0 + slices; ++z) {
-      work.slices.push_back(cut(at_[2][z]));
-      work.codes.emplace_back(work.stride * static_cast<std::size_t>(grid_.nr));
+    for (std::size_t s = 0; s < slices; ++s) {
+      work.slices[s] = cut(at_[2][z0 + s]);
+      work.codes[s].resize(work.stride * static_cast<std::size_t>(grid_.nr));
     }
     for (std::size_t pair = 0; pair < pairs_; ++pair) {
       if (orders_.empty()) make_order(work.order, band, pair);
@@ -311,17 +314,28 @@ class Sweeper {
     }
     for (std::size_t s = 0; s < slices; ++s)
       pieces[(z0 + s) * bands_ + band] = collect(work, s, (z0 + s) * size() + first_row, rows);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(lent));
   }
 
  private:
   struct Work {
-    std::vector<Slice> slices;
-    std::vector<std::vector<Code>> codes;  ///< of each slice, by direction, then voxel
-    std::size_t stride = 0;                ///< codes of a direction; an odd number of lines
+    std::array<Slice, kSlices> slices;
+    std::array<std::vector<Code>, kSlices> codes;  ///< of each slice, by direction, then voxel
+    std::size_t stride = 0;                        ///< codes of a direction; an odd number of lines
     Order order;
     Sweep sweep;
     std::vector<Code> behind;  ///< an odd number of directions: not asked for
   };
+
+  /// What an earlier task has left, or new: fresh memory costs as much as filling it.
+  std::unique_ptr<Work> lend() const {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<Work>();
+    std::unique_ptr<Work> work = std::move(idle_.back());
+    idle_.pop_back();
+    return work;
+  }
 
   std::size_t size() const { return static_cast<std::size_t>(grid_.ns); }
 
@@ -418,7 +432,9 @@ class Sweeper {
     piece.rays = count * static_cast<std::uint64_t>(grid_.nr);
     Line line;
     line.changes.resize((static_cast<std::size_t>(grid_.nr) + 15) / 16);
-    Runs runs{std::vector<std::uint32_t>(2 * work.slices[s].planes.size() + 2), {}};
+    const std::size_t code_count = 2 * work.slices[s].planes.size() + 2;
+    Runs runs{std::vector<std::uint32_t>(code_count),
+              std::vector<std::uint64_t>(code_count / 64 + 1)};
     for (std::size_t at = 0; at < count; at += kLine) {
       const Code* codes = work.codes[s].data() + at;
       count_line(codes, work.stride, grid_.nr, line);
@@ -435,41 +451,43 @@ class Sweeper {
     return piece;
   }
 
-  /// Counts by code, and which are not zero.
+  /// Counts by code, all zero between voxels, and a bit for each code met.
   struct Runs {
     std::vector<std::uint32_t> count;
-    std::vector<Code> met;
+    std::vector<std::uint64_t> met;
   };
 
-  /// One voxel's hits by rising plane: neighbouring directions mostly see the same, so that its
-  /// directions are taken run by run.
+  /// One voxel's hits by rising plane. Neighbouring directions mostly see the same, so directions
+  /// are taken run by run: where a code ends, it gets the direction added, where one begins, taken
+  /// off. There are hardly any branches to guess: the bits of `met` give the codes in order.
   void append_hits(const Code* codes, std::size_t stride, const Line& line, std::size_t i,
                    const std::vector<int>& planes, Runs& runs, std::vector<Hit>& hits) const {
-    runs.met.clear();
     Code code = 0;
-    std::uint32_t start = 0;
-    const auto end_run = [&](std::uint32_t k) {
-      if (code != 0 && runs.count[code] == 0) runs.met.push_back(code);
-      runs.count[code] += k - start;
-    };
-    for (std::size_t group = 0; group < line.changes.size(); ++group)
-      for (unsigned left = line.changes[group][i]; left != 0; left &= left - 1) {
-        const std::uint32_t k = static_cast<std::uint32_t>(16 * group) +
-                                static_cast<std::uint32_t>(std::countr_zero(left));
-        end_run(k);
-        start = k, code = codes[k * stride];
+    for (std::size_t group = 0; group < line.changes.size(); group += 4) {
+      std::uint64_t left = 0;
+      for (std::size_t g = group; g < std::min(group + 4, line.changes.size()); ++g)
+        left |= static_cast<std::uint64_t>(line.changes[g][i]) << (16 * (g - group));
+      for (; left != 0; left &= left - 1) {
+        const auto k = static_cast<std::uint32_t>(16 * group) +
+                       static_cast<std::uint32_t>(std::countr_zero(left));
+        runs.count[code] += k;
+        code = codes[k * stride];
+        runs.count[code] -= k;
+        runs.met[code / 64] |= std::uint64_t{1} << (code % 64);
       }
-    end_run(static_cast<std::uint32_t>(grid_.nr));
-    runs.count[0] = 0;
-    std::sort(runs.met.begin(), runs.met.end());
-    const std::size_t first = hits.size();
-    for (const Code c : runs.met) {
-      const auto plane = static_cast<std::uint32_t>(planes[c / 2 - 1]);
-      if (hits.size() == first || hits.back().plane != plane) hits.push_back({plane, 0, 0});
-      (c % 2 == 1 ? hits.back().inside : hits.back().outside) =
-          static_cast<std::uint16_t>(runs.count[c]);
-      runs.count[c] = 0;
     }
+    runs.count[code] += static_cast<std::uint32_t>(grid_.nr);
+    runs.count[0] = 0, runs.met[0] &= ~std::uint64_t{1};
+    const std::size_t first = hits.size();
+    for (std::size_t w = 0; w < runs.met.size(); ++w)
+      for (; runs.met[w] != 0; runs.met[w] &= runs.met[w] - 1) {
+        const std::size_t c = 64 * w + static_cast<std::size_t>(std::countr_zero(runs.met[w]));
+        const auto plane = static_cast<std::uint32_t>(planes[c / 2 - 1]);
+        if (hits.size() == first || hits.back().plane != plane) hits.push_back({plane, 0, 0});
+        (c % 2 == 1 ? hits.back().inside : hits.back().outside) =
+            static_cast<std::uint16_t>(runs.count[c]);
+        runs.count[c] = 0;
+      }
   }
 
   const Job& job_;
@@ -477,6 +495,8 @@ class Sweeper {
   std::array<std::vector<double>, 3> at_;  ///< coordinates of the voxels' centres along each axis
   std::vector<Direction> directions_;
   std::size_t pairs_ = 0, rows_ = 0, bands_ = 0;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Work>> idle_;
   std::vector<Order> orders_;  ///< by band, then pair; empty when they would be too many
 };
 
