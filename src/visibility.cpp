@@ -6,8 +6,9 @@
 //   centroid lies at the height of a horizontal plane or in the line of a wall of the local frame's
 //   grid; hits of voxels that are neither valid nor half surrounded by outer sides are dropped,
 //   which is what makes the early stop exact; coplanar outlines that overlap are moved apart by a
-//   hair, so that it is not rounding that decides which of them a ray meets. Robust (`is_party_wall_rule`): a voxel whose rays
-//   leave through a missing party wall is valid all the same.
+//   hair, so that it is not rounding that decides which of them a ray meets. Robust
+//   (`is_party_wall_rule`): a voxel whose rays leave through a missing party wall is valid all the
+//   same.
 // Notation: d_k direction at 2πk/n_r.
 #include "visibility.h"
 
