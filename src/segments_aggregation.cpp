@@ -196,21 +196,30 @@ class CandidateQueue {
   std::priority_queue<Candidate> later_;
 };
 
-/// One round: all pairs scored, best first; a pair whose groups have grown is scored again.
-bool merge_best_first(GroupForest& forest, const std::vector<GroupPair>& pairs, double threshold) {
+/// The pairs above the threshold.
+std::vector<Candidate> score(const GroupForest& forest, const std::vector<GroupPair>& pairs,
+                             double threshold) {
   std::vector<double> overlaps(pairs.size());
   parallel_ranges(pairs.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       overlaps[i] = group_overlap(forest.group(pairs[i].first), forest.group(pairs[i].second),
                                   MergeRule::kHistogram);
   });
-  std::vector<Candidate> start;
+  const auto is_above = [&](double overlap) { return overlap > threshold; };
+  std::vector<Candidate> above;
+  above.reserve(
+      static_cast<std::size_t>(std::count_if(overlaps.begin(), overlaps.end(), is_above)));
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (overlaps[i] > threshold) {
+    if (is_above(overlaps[i])) {
       const auto [a, b] = pairs[i];
-      start.push_back({overlaps[i], a, b, forest.stamp(a, b)});
+      above.push_back({overlaps[i], a, b, forest.stamp(a, b)});
     }
-  CandidateQueue queue(std::move(start));
+  return above;
+}
+
+/// One round: all pairs scored, best first; a pair whose groups have grown is scored again.
+bool merge_best_first(GroupForest& forest, const std::vector<GroupPair>& pairs, double threshold) {
+  CandidateQueue queue(score(forest, pairs, threshold));
   std::unordered_map<std::uint64_t, std::uint64_t> scored;  // pair → stamp; only looked up
   bool is_changed = false;
   while (!queue.is_empty()) {
