@@ -32,6 +32,7 @@
 
 #include "../src/error.h"
 #include "../src/frame.h"
+#include "../src/ground.h"
 #include "../src/light_field.h"
 #include "../src/mesh_io.h"
 #include "../src/metrics.h"
@@ -53,6 +54,18 @@ constexpr std::size_t kMostPlanes = 20;  // PolyFit
 constexpr std::size_t kPolyfitPoints = 20000;
 
 Error no_answer(const std::string& why) { return Error(Stage::kProcess, "peer", why); }
+
+/// What all methods are given and measured against: the building without its ground, about which
+/// colod does not argue with them.
+Source read_building(const std::string& path) {
+  const Source source = read_single(path);
+  const Frame frame = main_frame(source);
+  const Source local = localize(source, frame);
+  Source building = separate_ground(local);
+  if (building.mesh.faces.size() == local.mesh.faces.size()) return source;
+  for (Vec3& v : building.mesh.vertices) v = frame.to_world(v);
+  return building;
+}
 
 /// The source about its own centre: floats and predicates keep their digits.
 Vec3 center(Source& source) {
@@ -248,7 +261,7 @@ Mesh compact(const Mesh& mesh) {
 
 void run(const std::string& peer, const std::string& path, const std::string& out,
          std::size_t faces) {
-  Source source = read_single(path);
+  Source source = read_building(path);
   const Vec3 origin = center(source);
   if (!source.is_mesh() && (peer == "meshopt" || peer == "quadrics"))
     throw no_answer("needs a mesh");
@@ -282,7 +295,7 @@ nlohmann::ordered_json measure(const DistanceGauge& gauge, const LightFields* ow
 }
 
 void measure_all(const std::string& path, const std::vector<std::string>& models) {
-  const Source source = read_single(path);
+  const Source source = read_building(path);
   const DistanceGauge gauge(source);
   std::optional<LightFields> own;
   if (source.is_mesh()) own = describe_light_fields(source.mesh);

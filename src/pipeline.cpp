@@ -9,6 +9,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "ground.h"
 #include "parallel.h"
 #include "stopwatch.h"
 
@@ -147,6 +148,7 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
+    if (!is_paper(options)) b.source = separate_ground(std::move(b.source));
     find_segments(b, options);
   } catch (const Error& e) {
     b.failure = e.what();
