@@ -48,6 +48,7 @@ class GroupIndex {
     if (last >= 0) next_[last] = added;
     next_.push_back(-1);
     groups_.emplace_back();
+    groups_.back().hits.reserve(seen.size());  // of a million groups: every spare byte counts
     for (const PlaneHits& s : seen) groups_.back().hits.push_back({s.plane, 0});
     return added;
   }
