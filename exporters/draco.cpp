@@ -52,7 +52,7 @@ std::vector<std::array<T, 1>> as_scalars(const std::vector<std::uint32_t>& ids) 
 }
 
 struct Attributes {
-  int position = 0, normal = 0, feature = -1;
+  int position = 0, normal = 0;
 };
 
 std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGrid& grid,
@@ -72,21 +72,20 @@ std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGr
       add_attribute<float, 3>(*out, Kind::POSITION, draco::DT_FLOAT32, as_floats(rounded));
   ids.normal =
       add_attribute<float, 3>(*out, Kind::NORMAL, draco::DT_FLOAT32, as_floats(mesh.normals));
-  if (!mesh.feature_ids.empty()) {
-    const std::uint32_t most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
-    ids.feature = most <= kMaxIntegerId
-                      ? add_attribute<std::uint16_t, 1>(*out, Kind::GENERIC, draco::DT_UINT16,
-                                                        as_scalars<std::uint16_t>(mesh.feature_ids))
-                      : add_attribute<float, 1>(*out, Kind::GENERIC, draco::DT_FLOAT32,
-                                                as_scalars<float>(mesh.feature_ids));
-  }
+  const std::uint32_t most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
+  if (most <= kMaxIntegerId)
+    add_attribute<std::uint16_t, 1>(*out, Kind::GENERIC, draco::DT_UINT16,
+                                    as_scalars<std::uint16_t>(mesh.feature_ids));
+  else
+    add_attribute<float, 1>(*out, Kind::GENERIC, draco::DT_FLOAT32,
+                            as_scalars<float>(mesh.feature_ids));
   out->DeduplicateAttributeValues();  // equal positions of neighbouring facets share connectivity
   out->DeduplicatePointIds();
   return out;
 }
 
 /// What a client will see.
-void read_back(DracoResult& result, const Attributes& ids) {
+void read_back(DracoResult& result) {
   draco::DecoderBuffer buffer;
   buffer.Init(result.bytes.data(), result.bytes.size());
   draco::Decoder decoder;
@@ -99,11 +98,10 @@ void read_back(DracoResult& result, const Attributes& ids) {
       mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   const draco::PointAttribute* normal = mesh.GetNamedAttribute(draco::GeometryAttribute::NORMAL);
   const draco::PointAttribute* feature = mesh.GetNamedAttribute(draco::GeometryAttribute::GENERIC);
-  if (!position || !normal || (ids.feature >= 0) != (feature != nullptr))
-    refuse("an attribute got lost");
+  if (!position || !normal || !feature) refuse("an attribute got lost");
   result.position_id = static_cast<int>(position->unique_id());
   result.normal_id = static_cast<int>(normal->unique_id());
-  result.feature_id = feature ? static_cast<int>(feature->unique_id()) : -1;
+  result.feature_id = static_cast<int>(feature->unique_id());
   Box box;
   for (std::uint32_t i = 0; i < result.vertices; ++i) {
     std::array<float, 3> p;
@@ -116,13 +114,17 @@ void read_back(DracoResult& result, const Attributes& ids) {
 }  // namespace
 
 QuantizationGrid fit_grid(const Box& box, double bound) {
-  const double longest = box.is_empty() ? 0 : box.size().maxCoeff();
   double step = std::exp2(std::floor(std::log2(2 * bound / std::sqrt(3.0))));
   const double reach =
       box.is_empty() ? 0 : std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   while (reach / step + 2 > (1 << 24)) step *= 2;
+  return grid_about(box, step);
+}
+
+QuantizationGrid grid_about(const Box& box, double step) {
   QuantizationGrid grid;
   if (!box.is_empty()) grid.origin = (box.min / step).array().floor().matrix() * step;
+  const double longest = box.is_empty() ? 0 : box.size().maxCoeff();
   const double cells = std::ceil(longest / step) + 1;
   grid.bits = std::clamp(static_cast<int>(std::ceil(std::log2(cells + 1))), 8, 24);
   grid.range = step * ((1 << grid.bits) - 1);
@@ -143,9 +145,36 @@ DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid) {
   check(encoder.EncodeToBuffer(&buffer));
   DracoResult result;
   result.bytes.assign(buffer.data(), buffer.size());
-  read_back(result, ids);
+  read_back(result);
   if (result.faces != mesh.triangles.size()) refuse("the encoder lost faces");
   return result;
+}
+
+DracoContent decode_draco(const std::string& bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!decoded.ok()) throw Error(Stage::kInput, "draco", decoded.status().error_msg_string());
+  const draco::Mesh& mesh = *decoded.value();
+  DracoContent out;
+  out.vertices = mesh.num_points();
+  for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f)
+    out.faces.push_back({static_cast<int>(mesh.face(f)[0].value()),
+                         static_cast<int>(mesh.face(f)[1].value()),
+                         static_cast<int>(mesh.face(f)[2].value())});
+  for (int a = 0; a < mesh.num_attributes(); ++a) {
+    const draco::PointAttribute& attribute = *mesh.attribute(a);
+    auto& values = out.attributes[static_cast<int>(attribute.unique_id())];
+    values.components = attribute.num_components();
+    std::vector<float> element(values.components);
+    for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
+      attribute.ConvertValue<float>(attribute.mapped_index(p), attribute.num_components(),
+                                    element.data());
+      values.values.insert(values.values.end(), element.begin(), element.end());
+    }
+  }
+  return out;
 }
 
 }  // namespace colod

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace colod {
 struct FlatMesh {
   std::vector<Vec3> positions;             ///< metres, in the axes of the container
   std::vector<Vec3> normals;               ///< unit, per position
-  std::vector<std::uint32_t> feature_ids;  ///< per position, or empty
+  std::vector<std::uint32_t> feature_ids;  ///< per position; empty only where neither packed
   std::vector<Face> triangles;
 };
 
@@ -38,15 +39,32 @@ struct QuantizationGrid {
 /// 8 to 24 bits (a float holds no more), hence a wider step for boxes beyond 2^24 steps.
 QuantizationGrid fit_grid(const Box& box, double bound);
 
+/// The grid of this step (a power of two) about one tile's or mesh's box.
+QuantizationGrid grid_about(const Box& box, double step);
+
 struct DracoResult {
   std::string bytes;
-  std::uint32_t vertices = 0, faces = 0;                ///< as a decoder will see them
-  Vec3 min, max;                                        ///< of the decoded positions
-  int position_id = 0, normal_id = 0, feature_id = -1;  ///< Draco unique ids
+  std::uint32_t vertices = 0, faces = 0;               ///< as a decoder will see them
+  Vec3 min, max;                                       ///< of the decoded positions
+  int position_id = 0, normal_id = 0, feature_id = 0;  ///< Draco unique ids
 };
 
 /// Triangles with two corners on one point must have been left out. Throws Error{kOutput} when the
 /// encoder refuses or loses a face.
 DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid);
+
+/// What a decoder finds in a stream, for checks: values by Draco unique id.
+struct DracoContent {
+  struct Attribute {
+    int components = 0;
+    std::vector<double> values;  ///< `components` a vertex
+  };
+  std::size_t vertices = 0;
+  std::vector<Face> faces;
+  std::map<int, Attribute> attributes;
+};
+
+/// Throws Error{kInput} when it does not decode.
+DracoContent decode_draco(const std::string& bytes);
 
 }  // namespace colod

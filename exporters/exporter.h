@@ -2,6 +2,7 @@
 // writes them.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,19 @@ struct Encoded {
   std::string bytes;
 };
 
+/// How vertex data are packed: plain floats, KHR_draco_mesh_compression, or
+/// EXT_meshopt_compression.
+enum class Compression { kNone, kDraco, kMeshopt };
+
 /// One layer of one building as exporters see it. Coordinates: building-local metres, z up, axes
 /// parallel to the world's (the pipeline has undone the frame's yaw); world = local +
 /// ExportBuilding::origin.
 struct ExportLayer {
   int layer = 0;  ///< 0 = coarsest
   PolygonMesh mesh;
-  double geometric_error = 0;  ///< metres, measured one-sided Hausdorff distance source → layer,
-                               ///< made non-rising with finer layers
+  double geometric_error = 0;  ///< metres, measured: the one-sided Hausdorff distance source →
+                               ///< layer and, after measure_visible_errors, layer → finest layer;
+                               ///< never less than a finer layer's
 };
 
 struct ExportBuilding {
@@ -30,6 +36,12 @@ struct ExportBuilding {
   std::string source;               ///< file it came from
   Vec3 origin = Vec3::Zero();       ///< world position of the local origin
   std::vector<ExportLayer> layers;  ///< coarsest first; not empty; layers that failed are absent
+};
+
+/// Where the scene stands on Earth.
+struct Placement {
+  std::function<Vec3(const Vec3& world)> to_ecef;  ///< thread-safe; empty: nowhere on Earth
+  std::string name;                                ///< of the reference system, for readers
 };
 
 }  // namespace colod

@@ -1,4 +1,4 @@
-// Based on: MSFT_lod (with MSFT_screencoverage), KHR_draco_mesh_compression; the layout that
+// Based on: MSFT_lod (with MSFT_screencoverage), EXT_structural_metadata; the layout that
 // Babylon.js loads progressively and UnityGLTF turns into a LODGroup.
 // Differs: coverage comes from measured errors, as Simplygon's deviation against screen size.
 // Notation: c coverage, p pixel_error, D bounding sphere's diameter, eps geometric error, H
@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "../src/error.h"
-#include "gltf.h"
+#include "metadata.h"
 
 namespace colod {
 
@@ -39,6 +39,7 @@ struct Level {
   QuantizationGrid grid;
   int mesh = 0;
   double error = 0;  // with the rounding's
+  std::size_t faces = 0;
 };
 
 /// The levels, finest first, with grids that nest in one another.
@@ -64,7 +65,10 @@ Json node_of(const ExportBuilding& building, const Level& level, std::size_t lod
   Json node;
   node["name"] = building.name + "_LOD" + std::to_string(lod);
   node["mesh"] = level.mesh;
-  node["extras"] = {{"layer", level.layer->layer}, {"geometricError", level.error}};
+  node["extras"] = {{"building", building.name},
+                    {"layer", level.layer->layer},
+                    {"geometricError", level.error},
+                    {"faces", level.faces}};
   return node;
 }
 
@@ -80,19 +84,26 @@ Encoded encode_building_glb(const ExportBuilding& building, const GlbOptions& op
                                       {"source", building.source}};
   for (std::size_t lod = levels.size(); lod-- > 0;) {  // coarsest first in the binary chunk
     Level& level = levels[lod];
-    const FlatMesh flat = flatten(level.layer->mesh, Vec3::Zero(), level.grid);
+    const FlatMesh flat =
+        flatten(level.layer->mesh, Vec3::Zero(), level.grid, static_cast<int>(lod));
+    level.faces = flat.triangles.size();
     Json mesh;
     mesh["name"] = building.name + "_LOD" + std::to_string(lod);
-    mesh["primitives"] =
-        Json::array({add_primitive(document, flat, level.grid, options.has_draco)});
+    Json primitive = add_primitive(document, flat, level.grid, options.compression);
+    primitive["extensions"]["EXT_mesh_features"] = feature_ids(levels.size());
+    mesh["primitives"] = Json::array({primitive});
     level.mesh = static_cast<int>(document.json["meshes"].size());
     document.json["meshes"].push_back(mesh);
   }
   std::vector<double> errors;
+  std::vector<Feature> features;  // a row a level, by its LOD number
   for (std::size_t lod = 0; lod < levels.size(); ++lod) {
     document.json["nodes"].push_back(node_of(building, levels[lod], lod));
     errors.push_back(levels[lod].error);
+    features.push_back({building.name, levels[lod].layer->layer, levels[lod].error, building.source,
+                        levels[lod].faces});
   }
+  add_features(document, features);
   Json& root = document.json["nodes"][0];
   const double diameter = bounding_box(levels[0].layer->mesh.vertices).diagonal();
   root["extras"]["MSFT_screencoverage"] = screen_coverage(errors, diameter, options);

@@ -1,5 +1,8 @@
-// Based on: glTF 2.0 (Khronos), KHR_draco_mesh_compression.
+// Based on: glTF 2.0 (Khronos), KHR_draco_mesh_compression, EXT_meshopt_compression,
+// KHR_mesh_quantization.
 // Differs: without fallback data; positions are metres about a local origin, so floats suffice.
+// With meshopt they stay floats, since levels of different grids share one node's transform, and
+// normals become bytes.
 #include "gltf.h"
 
 #include <algorithm>
@@ -7,19 +10,29 @@
 #include <map>
 #include <tuple>
 
+#include "meshopt.h"
+
 namespace colod {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
 
-enum ComponentType { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+enum ComponentType { kByte = 5120, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr std::uint32_t kMaxShort = 65535;
 
 template <typename T>
 void put(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);  // hosts are little endian
+}
+
+void pad(std::string& bytes, std::size_t multiple, char with) {
+  while (bytes.size() % multiple != 0) bytes += with;
+}
+
+void name_extension(Json& list, const std::string& extension) {
+  if (std::find(list.begin(), list.end(), extension) == list.end()) list.push_back(extension);
 }
 
 int add_accessor(GltfDocument& document, ComponentType component, const char* type,
@@ -50,12 +63,10 @@ Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationG
   attributes["POSITION"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
   set_bounds(document, attributes["POSITION"], box);
   attributes["NORMAL"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
-  if (draco.feature_id >= 0) {
-    const auto most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
-    extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
-    attributes["_FEATURE_ID_0"] = add_accessor(document, most > kMaxShort ? kFloat : kUnsignedShort,
-                                               "SCALAR", draco.vertices);
-  }
+  const auto most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
+  extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
+  attributes["_FEATURE_ID_0"] =
+      add_accessor(document, most > kMaxShort ? kFloat : kUnsignedShort, "SCALAR", draco.vertices);
   Json primitive;
   primitive["attributes"] = attributes;
   primitive["indices"] =
@@ -96,12 +107,73 @@ Json add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   return primitive;
 }
 
-void pad(std::string& bytes, std::size_t multiple, char with) {
-  while (bytes.size() % multiple != 0) bytes += with;
+/// Elements as meshopt packs them, and what a buffer view says of them.
+struct Stream {
+  std::string bytes;
+  std::size_t stride = 0;
+  int target = kArrayBuffer;
+};
+
+int add_packed_view(GltfDocument& document, const Stream& stream, const std::string& payload,
+                    const char* mode) {
+  pad(document.binary, 8, '\0');
+  document.unpacked_bytes = (document.unpacked_bytes + 7) / 8 * 8;
+  Json view = {
+      {"buffer", 1}, {"byteOffset", document.unpacked_bytes}, {"byteLength", stream.bytes.size()}};
+  if (stream.target == kArrayBuffer) view["byteStride"] = stream.stride;
+  view["target"] = stream.target;
+  view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                   {"byteOffset", document.binary.size()},
+                                                   {"byteLength", payload.size()},
+                                                   {"byteStride", stream.stride},
+                                                   {"count", stream.bytes.size() / stream.stride},
+                                                   {"mode", mode}};
+  document.unpacked_bytes += stream.bytes.size();
+  document.binary += payload;
+  document.json["bufferViews"].push_back(view);
+  return static_cast<int>(document.json["bufferViews"].size()) - 1;
 }
 
-void name_extension(Json& list, const std::string& extension) {
-  if (std::find(list.begin(), list.end(), extension) == list.end()) list.push_back(extension);
+int add_packed(GltfDocument& document, const Stream& stream) {
+  return add_packed_view(document, stream, encode_meshopt_vertices(stream.bytes, stream.stride),
+                         "ATTRIBUTES");
+}
+
+Json add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
+  std::vector<std::uint32_t> indices, order;
+  for (const Face& f : mesh.triangles)
+    for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
+  optimize_order(indices, mesh.positions.size(), order);
+  Stream triangles{{}, 4, kElementArrayBuffer}, positions{{}, 12}, normals{{}, 4}, ids{{}, 4};
+  for (const std::uint32_t i : indices) put(triangles.bytes, i);
+  for (const std::uint32_t v : order) {
+    const Eigen::Vector3f p = mesh.positions[v].cast<float>();
+    box.extend(Vec3(p.cast<double>()));
+    for (int k = 0; k < 3; ++k) put(positions.bytes, p[k]);
+    for (int k = 0; k < 3; ++k)
+      put(normals.bytes, static_cast<std::int8_t>(std::lround(127 * mesh.normals[v][k])));
+    put(normals.bytes, std::int8_t{0});
+    put(ids.bytes, static_cast<float>(mesh.feature_ids[v]));
+  }
+  Json primitive, attributes;
+  const int index_view = add_packed_view(
+      document, triangles, encode_meshopt_indices(indices, order.size()), "TRIANGLES");
+  attributes["POSITION"] =
+      add_accessor(document, kFloat, "VEC3", order.size(), add_packed(document, positions));
+  set_bounds(document, attributes["POSITION"], box);
+  attributes["NORMAL"] =
+      add_accessor(document, kByte, "VEC3", order.size(), add_packed(document, normals));
+  document.json["accessors"][attributes["NORMAL"].get<int>()]["normalized"] = true;
+  attributes["_FEATURE_ID_0"] =
+      add_accessor(document, kFloat, "SCALAR", order.size(), add_packed(document, ids));
+  primitive["attributes"] = attributes;
+  primitive["indices"] = add_accessor(document, kUnsignedInt, "SCALAR", indices.size(), index_view);
+  return primitive;
+}
+
+void require(GltfDocument& document, const char* extension) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    name_extension(document.json[list], extension);
 }
 
 /// Position → number, so that equal positions become one.
@@ -155,13 +227,23 @@ int add_buffer_view(GltfDocument& document, const std::string& bytes, int target
 }
 
 Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const QuantizationGrid& grid,
-                   bool has_draco, Box* box) {
+                   Compression compression, Box* box) {
   Box seen;
-  Json primitive =
-      has_draco ? add_draco(document, mesh, grid, seen) : add_plain(document, mesh, seen);
-  if (has_draco)
-    for (const char* list : {"extensionsUsed", "extensionsRequired"})
-      name_extension(document.json[list], "KHR_draco_mesh_compression");
+  Json primitive;
+  switch (compression) {
+    case Compression::kNone:
+      primitive = add_plain(document, mesh, seen);
+      break;
+    case Compression::kDraco:
+      primitive = add_draco(document, mesh, grid, seen);
+      require(document, "KHR_draco_mesh_compression");
+      break;
+    case Compression::kMeshopt:
+      primitive = add_meshopt(document, mesh, seen);
+      require(document, "EXT_meshopt_compression");
+      require(document, "KHR_mesh_quantization");
+      break;
+  }
   primitive["material"] = 0;
   if (box) *box = seen;
   return primitive;
@@ -170,6 +252,11 @@ Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const Quantizat
 std::string finish_glb(GltfDocument document) {
   pad(document.binary, 4, '\0');
   document.json["buffers"] = Json::array({{{"byteLength", document.binary.size()}}});
+  if (document.unpacked_bytes > 0) {
+    Json stand_in = {{"byteLength", document.unpacked_bytes}};
+    stand_in["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
+    document.json["buffers"].push_back(stand_in);
+  }
   std::string json = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
   pad(json, 4, ' ');
   std::string glb = "glTF";
@@ -203,7 +290,7 @@ FlatMesh flatten(const PolygonMesh& mesh, const Vec3& offset, const Quantization
       if (!is_new) continue;
       out.positions.push_back(rounded[f[c]]);
       out.normals.push_back(normals[facet]);
-      if (feature >= 0) out.feature_ids.push_back(static_cast<std::uint32_t>(feature));
+      out.feature_ids.push_back(static_cast<std::uint32_t>(feature));
     }
     out.triangles.push_back(flat);
   }

@@ -18,6 +18,7 @@ namespace colod {
 struct GltfDocument {
   nlohmann::ordered_json json;
   std::string binary;
+  std::size_t unpacked_bytes = 0;  ///< of the buffer that EXT_meshopt_compression stands for
 };
 
 /// A document with the asset, one material and no content.
@@ -26,14 +27,14 @@ GltfDocument start_gltf();
 /// Appends `bytes` as a buffer view that starts at a multiple of 8; `target` is glTF's hint or 0.
 int add_buffer_view(GltfDocument& document, const std::string& bytes, int target = 0);
 
-/// Appends the mesh as one primitive (Draco or plain) and returns it. A Draco primitive takes one
-/// buffer view, a plain one three or four, contiguous. `box`, when asked for, receives what a
-/// client will see, in glTF axes.
+/// Appends the mesh as one primitive and returns it. A Draco primitive takes one buffer view, the
+/// others three or four, contiguous. `box`, when asked for, receives what a client will see, in
+/// glTF axes.
 nlohmann::ordered_json add_primitive(GltfDocument& document, const FlatMesh& mesh,
-                                     const QuantizationGrid& grid, bool has_draco,
+                                     const QuantizationGrid& grid, Compression compression,
                                      Box* box = nullptr);
 
-/// The .glb file: header, JSON chunk, BIN chunk. Names Draco among the extensions where it is used.
+/// The .glb file: header, JSON chunk, BIN chunk.
 std::string finish_glb(GltfDocument document);
 
 /// Tile or building axes (z up) to glTF's (y up) and back.
@@ -42,9 +43,9 @@ inline Vec3 from_gltf(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
 
 /// The layer flat-shaded in glTF axes, moved by `offset` (z-up metres) and rounded to the grid;
 /// triangles that rounding made a line between two points or a point are left out, which opens no
-/// hole. `feature` ≥ 0 gives every vertex this id.
+/// hole. Every vertex gets the id `feature`.
 FlatMesh flatten(const PolygonMesh& mesh, const Vec3& offset, const QuantizationGrid& grid,
-                 int feature = -1);
+                 int feature = 0);
 
 /// Appends b to a.
 void append(FlatMesh& a, const FlatMesh& b);

@@ -1,16 +1,18 @@
 // Based on: 3D Tiles 1.1 (OGC 22-025r4), EXT_mesh_features, EXT_structural_metadata.
 // Differs: geometric errors are measured, times k = target_sse / pixel_error, instead of guessed
-// from box sizes; one quantization step for all tiles, so that neighbours do not crack. The root
-// and inner tiles merge the buildings' coarsest layers; below each leaf group hangs one chain of
-// finer layers a building, so that REPLACE always replaces a building by itself.
-// Notation: k as above; eps geometric error in metres.
+// from box sizes; all tiles share one quantization step or a power of two of it, so that neighbours
+// do not crack.
+// Notation: k as above; eps the content's error in metres, rounding included.
 #include "tiles3d.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
 #include "../src/error.h"
-#include "gltf.h"
+#include "../src/parallel.h"
+#include "metadata.h"
+#include "tiles3d_frame.h"
+#include "tiles3d_tree.h"
 
 namespace colod {
 
@@ -18,29 +20,31 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::size_t kMostChildren = 16;  // REPLACE waits for all children of a tile
-constexpr double kRise = 1.01;             // a parent's error is at least this times its children's
-constexpr double kLeastError = 1e-3;       // metres; of a tile that is finer than its errors tell
-constexpr int kMostInOneTable = 1 << 24;   // ids beyond are no exact floats
+constexpr double kRise = 1.01;          // a parent's error is at least this times its children's
+constexpr double kLeastError = 1e-3;    // metres; of a tile that is finer than its errors tell
+constexpr double kFinestShare = 0.3;    // of the bound: a rounding that shows only close by
+constexpr double kStandInShare = 0.02;  // of the least error of a tile's stand-ins
+constexpr std::size_t kMostNames = 4;   // of buildings behind one stand-in, in its name
 
-/// A building's layer within a tile.
-struct Part {
-  const ExportBuilding* building;
-  const ExportLayer* layer;
+/// A tile's GLB and what the tileset says of it.
+struct Content {
+  const PlannedTile* tile;
+  std::size_t frame;   // index into Scene::frames
+  std::string folder;  // of the tileset that the tile belongs to, "" or "tiles/<cell>/"
+  Encoded file;
+  Box box;  // z-up tile space
+  double eps = 0;
 };
 
 struct Scene {
+  const std::vector<ExportBuilding>& buildings;
   const TilesOptions& options;
-  std::vector<const ExportBuilding*> buildings;
-  Vec3 origin = Vec3::Zero();  // world position of the tileset's
-  Box box;                     // glTF axes, about origin
-  double step = 0;             // one for all tiles, metres
-  std::vector<Encoded> files;
-
-  Vec3 offset(const ExportBuilding& b) const { return b.origin - origin; }
+  std::vector<TileFrame> frames;  // the tileset's, then the cells'
+  std::vector<Content> contents;  // parents before children
+  std::vector<Encoded> cells;     // tilesets of cells
 };
 
-/// A written tile: its JSON and what its parent must cover.
+/// A finished tile and what its parent must cover.
 struct Tile {
   Json json;
   Box box;  // z-up tile space, with all below
@@ -61,104 +65,96 @@ std::string percent_encoded(const std::string& path) {
   return out;
 }
 
-/// The grid of the scene's step about one tile's box.
-QuantizationGrid tile_grid(const Scene& scene, const std::vector<Part>& parts) {
-  Box box;
-  for (const Part& part : parts)
-    for (const Vec3& p : part.layer->mesh.vertices)
-      box.extend(to_gltf(p + scene.offset(*part.building)));
-  QuantizationGrid grid;
-  grid.origin = (box.min / scene.step).array().floor().matrix() * scene.step;
-  const double cells = std::ceil(box.size().maxCoeff() / scene.step) + 1;
-  grid.bits = std::clamp(static_cast<int>(std::ceil(std::log2(cells + 1))), 8, 24);
-  grid.range = scene.step * ((1 << grid.bits) - 1);
-  return grid;
+Json vec_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Feature feature_of(const Scene& scene, const TilePart& part, double rounding, std::size_t faces) {
+  Feature f{{}, part.layer, part.error + rounding, {}, faces};
+  for (std::size_t i = 0; i < std::min(kMostNames, part.buildings.size()); ++i)
+    f.name += (i ? ", " : "") + scene.buildings[part.buildings[i]].name;
+  if (part.buildings.size() > kMostNames)
+    f.name += " and " + std::to_string(part.buildings.size() - kMostNames) + " more";
+  f.source = scene.buildings[part.buildings[0]].source;
+  for (const int b : part.buildings)
+    if (scene.buildings[b].source != f.source) f.source.clear();
+  return f;
 }
 
-template <typename T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// File names may be in any encoding, strings of a property table only in UTF-8.
-std::string as_utf8(const std::string& text) {
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))
-      .get<std::string>();
-}
-
-Json string_column(GltfDocument& document, const std::vector<std::string>& values) {
-  std::string bytes, offsets;
-  for (const std::string& value : values) {
-    put(offsets, static_cast<std::uint32_t>(bytes.size()));
-    bytes += as_utf8(value);
+/// The parts in the frame's coordinates, z up.
+std::vector<PolygonMesh> placed_parts(const PlannedTile& tile, const TileFrame& frame) {
+  std::vector<PolygonMesh> out;
+  for (const TilePart& part : tile.parts) {
+    out.push_back(*part.mesh);
+    for (Vec3& p : out.back().vertices) p = frame.local(p + part.origin);
   }
-  put(offsets, static_cast<std::uint32_t>(bytes.size()));
-  if (bytes.empty()) bytes = std::string(1, '\0');  // a buffer view must not be empty
-  Json column;
-  column["values"] = add_buffer_view(document, bytes);
-  column["stringOffsets"] = add_buffer_view(document, offsets);
-  return column;
-}
-
-Json schema() {
-  Json properties;
-  properties["name"] = {{"type", "STRING"}, {"description", "Building"}};
-  properties["layer"] = {{"type", "SCALAR"},
-                         {"componentType", "UINT16"},
-                         {"description", "Level of detail, 0 the coarsest"}};
-  properties["error"] = {{"type", "SCALAR"},
-                         {"componentType", "FLOAT32"},
-                         {"description", "Measured distance from the source, metres"}};
-  properties["source"] = {{"type", "STRING"}, {"description", "File that the building came from"}};
-  Json out;
-  out["id"] = "colod";
-  out["classes"]["building"] = {{"name", "Building"}, {"properties", properties}};
   return out;
 }
 
-void add_metadata(GltfDocument& document, const std::vector<Part>& parts, double rounding) {
-  std::vector<std::string> names, sources;
-  std::string layers, errors;
-  for (const Part& part : parts) {
-    names.push_back(part.building->name);
-    sources.push_back(part.building->source);
-    put(layers, static_cast<std::uint16_t>(part.layer->layer));
-    put(errors, static_cast<float>(part.layer->geometric_error + rounding));
-  }
-  Json table = {{"name", "buildings"}, {"class", "building"}, {"count", parts.size()}};
-  table["properties"]["name"] = string_column(document, names);
-  table["properties"]["layer"]["values"] = add_buffer_view(document, layers);
-  table["properties"]["error"]["values"] = add_buffer_view(document, errors);
-  table["properties"]["source"] = string_column(document, sources);
-  document.json["extensions"]["EXT_structural_metadata"] = {
-      {"schema", schema()}, {"propertyTables", Json::array({table})}};
-  for (const char* name : {"EXT_mesh_features", "EXT_structural_metadata"})
-    document.json["extensionsUsed"].push_back(name);
+/// A grid of the scene's steps that keeps closed what is closed.
+QuantizationGrid content_grid(const std::vector<PolygonMesh>& parts, double bound) {
+  Box box;
+  for (const PolygonMesh& mesh : parts)
+    for (const Vec3& p : mesh.vertices) box.extend(to_gltf(p));
+  double step = fit_grid(box, bound).step();
+  for (const PolygonMesh& mesh : parts)
+    step = std::min(step, fit_closed_grid(mesh, Vec3::Zero(), box, bound).step());
+  return grid_about(box, step);
 }
 
-/// Writes one GLB with the parts merged; returns its box in tile space.
-Box write_content(Scene& scene, const std::vector<Part>& parts, const std::string& name) {
-  const QuantizationGrid grid = tile_grid(scene, parts);
+/// Metres. Stand-ins are rounded to a share of what they deviate in any case.
+double rounding_bound(const PlannedTile& tile, const TilesOptions& options) {
+  if (tile.is_finest) return kFinestShare * options.quantization;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TilePart& part : tile.parts) least = std::min(least, part.layer < 0 ? part.error : 0);
+  return std::max(options.quantization, kStandInShare * least);
+}
+
+/// One GLB with the tile's parts merged.
+void encode_content(const Scene& scene, Content& content) {
+  const PlannedTile& tile = *content.tile;
+  const TileFrame& frame = scene.frames[content.frame];
+  const std::vector<PolygonMesh> parts = placed_parts(tile, frame);
+  const QuantizationGrid grid = content_grid(parts, rounding_bound(tile, scene.options));
   FlatMesh merged;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    append(merged, flatten(parts[i].layer->mesh, scene.offset(*parts[i].building), grid,
-                           static_cast<int>(i)));
+  std::vector<Feature> features;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const FlatMesh flat = flatten(parts[i], Vec3::Zero(), grid, static_cast<int>(i));
+    features.push_back(feature_of(scene, tile.parts[i], grid.error(), flat.triangles.size()));
+    content.eps = std::max(content.eps, features.back().error);
+    append(merged, flat);
+  }
   GltfDocument document = start_gltf();
-  const Vec3& o = scene.origin;
-  document.json["asset"]["extras"] = {{"origin", {o.x(), o.y(), o.z()}},
-                                      {"originAxes", "z up, metres"}};
   Box seen;
-  Json primitive = add_primitive(document, merged, grid, scene.options.has_draco, &seen);
-  primitive["extensions"]["EXT_mesh_features"]["featureIds"] =
-      Json::array({{{"featureCount", parts.size()}, {"attribute", 0}, {"propertyTable", 0}}});
-  document.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
-  document.json["nodes"].push_back({{"name", name}, {"mesh", 0}});
-  add_metadata(document, parts, grid.error());
-  scene.files.push_back({"tiles/" + name + ".glb", finish_glb(std::move(document))});
+  Json primitive = add_primitive(document, merged, grid, scene.options.compression, &seen);
+  primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());
+  Json node = {{"name", tile.name}, {"mesh", 0}};
+  if (features.size() == 1)
+    node["extras"] = {{"building", features[0].name}, {"layer", features[0].layer}};
+  document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
+  document.json["nodes"].push_back(node);
+  add_features(document, features);
+  const std::string folder = content.folder.empty() ? "tiles/" : content.folder;
+  content.file = {folder + tile.name + ".glb", finish_glb(std::move(document))};
+  content.box.extend(from_gltf(seen.min));
+  content.box.extend(from_gltf(seen.max));
+}
+
+/// At the middle of the parts' foot, to the metre.
+TileFrame frame_of(const Scene& scene, const PlannedTile& tile) {
   Box box;
-  box.extend(from_gltf(seen.min));
-  box.extend(from_gltf(seen.max));
-  return box;
+  for (const TilePart& part : tile.parts)
+    for (const Vec3& p : part.mesh->vertices) box.extend(Vec3(p + part.origin));
+  return {scene.options.placement, Vec3(std::round(box.center().x()), std::round(box.center().y()),
+                                        std::floor(box.min.z()))};
+}
+
+void list_contents(Scene& scene, const PlannedTile& tile, std::size_t frame, std::string folder) {
+  if (tile.is_cell && !scene.contents.empty()) {
+    folder = "tiles/" + tile.name + "/";
+    frame = scene.frames.size();
+    scene.frames.push_back(frame_of(scene, tile));
+  }
+  scene.contents.push_back({&tile, frame, folder, {}, {}});
+  for (const PlannedTile& child : tile.children) list_contents(scene, child, frame, folder);
 }
 
 Json box_json(const Box& box) {
@@ -166,139 +162,106 @@ Json box_json(const Box& box) {
   return {{"box", {c.x(), c.y(), c.z(), h.x(), 0, 0, 0, h.y(), 0, 0, 0, h.z()}}};
 }
 
-/// A tile with its content and children. Its error is k times the content's eps, raised where
-/// children would not lie strictly below; 0 for a leaf.
-Tile make_tile(Scene& scene, const std::vector<Part>& parts, const std::string& name,
-               std::vector<Tile> children) {
+Json start_tileset(const Scene& scene, const TileFrame& frame, Tile root) {
+  const Placement& place = scene.options.placement;
+  Json tileset;
+  tileset["asset"] = {{"version", "1.1"}, {"generator", "colod"}};
+  tileset["asset"]["extras"] = {
+      {"frame", place.to_ecef
+                    ? "x, y, z (up) in metres as in the input; the transform leads to ECEF"
+                    : "local: x, y, z (up) in metres as in the input, no place on Earth"},
+      {"crs", place.to_ecef ? Json(place.name) : Json(nullptr)},
+      {"offset", vec_json(frame.origin())},
+      {"targetSse", scene.options.target_sse},
+      {"pixelError", scene.options.pixel_error},
+      {"errorScale", scene.options.target_sse / scene.options.pixel_error}};
+  tileset["geometricError"] = std::max(16 * root.error, root.box.diagonal());  // drawn from afar
+  root.json["refine"] = "REPLACE";
+  tileset["root"] = std::move(root.json);
+  return tileset;
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// The tile at `next` in the list of contents, with all below; `next` moves behind them. Its error
+/// is k times the content's eps, raised where children would not lie strictly below; 0 for a leaf.
+Tile assemble(Scene& scene, std::size_t& next);
+
+/// A tile whose content is the cell's own tileset.
+Tile wrap_cell(Scene& scene, const Content& content, Tile inner) {
+  const TileFrame &frame = scene.frames[content.frame], &outer = scene.frames.front();
   Tile tile;
-  tile.box = write_content(scene, parts, name);
-  double eps = 0;
-  for (const Part& part : parts) eps = std::max(eps, part.layer->geometric_error);
-  eps += 0.5 * std::sqrt(3.0) * scene.step;
+  const auto transform = frame.to_parent(outer);
+  tile.box = moved(inner.box, transform);
+  tile.error = kRise * inner.error;
+  tile.json["boundingVolume"] = box_json(inner.box);
+  tile.json["geometricError"] = tile.error;
+  tile.json["transform"] = transform;
+  tile.json["content"]["uri"] = percent_encoded(content.folder + "tileset.json");
+  scene.cells.push_back(
+      {content.folder + "tileset.json", dumped(start_tileset(scene, frame, std::move(inner)))});
+  return tile;
+}
+
+Tile assemble(Scene& scene, std::size_t& next) {
+  const std::size_t self = next++;
+  const PlannedTile& planned = *scene.contents[self].tile;
+  const Content& content = scene.contents[self];
+  Tile tile;
+  tile.box = content.box;
   const double k = scene.options.target_sse / scene.options.pixel_error;
-  if (!children.empty()) tile.error = std::max(kLeastError, k * eps);
-  for (const Tile& child : children) {
+  if (!planned.children.empty()) tile.error = std::max(kLeastError, k * content.eps);
+  Json children = Json::array();
+  for (std::size_t i = 0; i < planned.children.size(); ++i) {
+    Tile child = assemble(scene, next);
     tile.box.extend(child.box);
     tile.error = std::max(tile.error, kRise * child.error);
+    children.push_back(std::move(child.json));
   }
   tile.json["boundingVolume"] = box_json(tile.box);
   tile.json["geometricError"] = tile.error;
-  tile.json["content"]["uri"] = percent_encoded("tiles/" + name + ".glb");
-  for (Tile& child : children) tile.json["children"].push_back(std::move(child.json));
+  tile.json["content"]["uri"] = percent_encoded(content.file.path.substr(content.folder.size()));
+  if (planned.parts.size() == 1 && planned.parts[0].layer >= 0)
+    tile.json["extras"] = {{"building", scene.buildings[planned.parts[0].buildings[0]].name},
+                           {"layer", planned.parts[0].layer}};
+  if (!children.empty()) tile.json["children"] = std::move(children);
+  if (planned.is_cell && self > 0) return wrap_cell(scene, content, std::move(tile));
   return tile;
 }
 
-/// The building's layers from `level` on, each the only child of the coarser one.
-Tile make_chain(Scene& scene, const ExportBuilding& building, std::size_t level) {
-  std::vector<Tile> children;
-  if (level + 1 < building.layers.size())
-    children.push_back(make_chain(scene, building, level + 1));
-  const ExportLayer& layer = building.layers[level];
-  Tile tile =
-      make_tile(scene, {{&building, &layer}},
-                building.name + ".layer" + std::to_string(layer.layer), std::move(children));
-  tile.json["extras"] = {{"building", building.name}, {"layer", layer.layer}};
-  return tile;
-}
-
-Vec3 middle(const ExportBuilding& b) {
-  return b.origin + bounding_box(b.layers.front().mesh.vertices).center();
-}
-
-/// Four groups of equal size by halving along x, then y. Ties go by place in the list.
-std::vector<std::vector<int>> quarter(const Scene& scene, std::vector<int> group) {
-  const auto halve = [&](std::vector<int> all, int axis) {
-    std::stable_sort(all.begin(), all.end(), [&](int a, int b) {
-      return middle(*scene.buildings[a])[axis] < middle(*scene.buildings[b])[axis];
-    });
-    const auto half = all.begin() + static_cast<long>((all.size() + 1) / 2);
-    return std::array{std::vector<int>(all.begin(), half), std::vector<int>(half, all.end())};
-  };
-  std::vector<std::vector<int>> out;
-  for (const std::vector<int>& side : halve(std::move(group), 0))
-    for (const std::vector<int>& part : halve(side, 1)) out.push_back(part);
-  for (std::vector<int>& part : out) std::sort(part.begin(), part.end());
-  return out;
-}
-
-/// The tile that shows a group's coarsest layers, and all below it.
-Tile make_group(Scene& scene, const std::vector<int>& group, const std::string& name) {
-  std::vector<Part> parts;
-  for (const int b : group)
-    parts.push_back({scene.buildings[b], &scene.buildings[b]->layers.front()});
-  std::vector<Tile> children;
-  if (group.size() > kMostChildren) {
-    int number = 0;
-    for (const std::vector<int>& part : quarter(scene, group))
-      children.push_back(make_group(scene, part, name + "." + std::to_string(number++)));
-  } else {
-    const bool has_finer = std::any_of(parts.begin(), parts.end(),
-                                       [](const Part& p) { return p.building->layers.size() > 1; });
-    for (const Part& p : parts)  // a building without a finer layer is replaced by itself
-      if (has_finer)
-        children.push_back(make_chain(scene, *p.building, p.building->layers.size() > 1));
-  }
-  return make_tile(scene, parts, name, std::move(children));
-}
-
-/// Origin at the scene's centre on its foot, to the metre; one step that keeps every closed layer
-/// closed.
-void place_scene(Scene& scene) {
-  Box world;
-  for (const ExportBuilding* b : scene.buildings)
-    for (const ExportLayer& layer : b->layers)
-      for (const Vec3& p : layer.mesh.vertices) world.extend(Vec3(p + b->origin));
-  scene.origin = {std::round(world.center().x()), std::round(world.center().y()),
-                  std::floor(world.min.z())};
-  scene.box.extend(to_gltf(world.min - scene.origin));
-  scene.box.extend(to_gltf(world.max - scene.origin));
-  scene.step = fit_grid(scene.box, scene.options.quantization).step();
-  for (const ExportBuilding* b : scene.buildings)
-    for (const ExportLayer& layer : b->layers)
-      scene.step = std::min(scene.step, fit_closed_grid(layer.mesh, scene.offset(*b), scene.box,
-                                                        scene.options.quantization)
-                                            .step());
-}
-
-std::vector<const ExportBuilding*> usable(const std::vector<ExportBuilding>& buildings) {
-  std::vector<const ExportBuilding*> out;
+void check(const std::vector<ExportBuilding>& buildings) {
   for (const ExportBuilding& b : buildings) {
     const bool is_whole = !b.layers.empty() &&
                           std::none_of(b.layers.begin(), b.layers.end(), [](const ExportLayer& l) {
                             return l.mesh.triangles.empty();
                           });
     if (!is_whole) throw Error(Stage::kOutput, b.name, "no layer, or a layer without triangles");
-    out.push_back(&b);
   }
-  if (out.empty()) throw Error(Stage::kOutput, "tileset.json", "no building to write");
-  if (out.size() > kMostInOneTable)
-    throw Error(Stage::kOutput, "tileset.json", "more buildings than ids in one tile");
-  return out;
+  if (buildings.empty()) throw Error(Stage::kOutput, "tileset.json", "no building to write");
 }
 
 }  // namespace
 
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
                                     const TilesOptions& options) {
-  Scene scene{options, usable(buildings), Vec3::Zero(), {}, 0, {}};
-  place_scene(scene);
-  std::vector<int> all(scene.buildings.size());
-  std::iota(all.begin(), all.end(), 0);
-  Tile root = make_group(scene, all, "root");
-  root.json["refine"] = "REPLACE";
-  Json tileset;
-  const Vec3& o = scene.origin;
-  tileset["asset"] = {{"version", "1.1"}, {"generator", "colod"}};
-  tileset["asset"]["extras"] = {
-      {"frame", "local: x, y, z (up) in metres as in the input, no place on Earth"},
-      {"offset", {o.x(), o.y(), o.z()}},
-      {"errorScale", options.target_sse / options.pixel_error}};
-  tileset["geometricError"] = std::max(16 * root.error, root.box.diagonal());  // drawn from afar
-  tileset["root"] = std::move(root.json);
+  check(buildings);
+  const TilePlan plan = plan_tiles(buildings);
+  Scene scene{buildings, options, {}, {}, {}};
+  scene.frames.push_back(frame_of(scene, plan.root));
+  list_contents(scene, plan.root, 0, "");
+  parallel_for(scene.contents.size(),
+               [&](std::size_t i) { encode_content(scene, scene.contents[i]); });
+  std::size_t next = 0;
+  Tile root = assemble(scene, next);
+  const TileFrame& frame = scene.frames.front();
+  if (frame.is_on_earth()) root.json["transform"] = frame.to_ecef();
   std::vector<Encoded> files = {
-      {"tileset.json", tileset.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"}};
-  files.insert(files.end(), std::make_move_iterator(scene.files.begin()),
-               std::make_move_iterator(scene.files.end()));
+      {"tileset.json", dumped(start_tileset(scene, frame, std::move(root)))}};
+  files.insert(files.end(), std::make_move_iterator(scene.cells.begin()),
+               std::make_move_iterator(scene.cells.end()));
+  for (Content& content : scene.contents) files.push_back(std::move(content.file));
   return files;
 }
 

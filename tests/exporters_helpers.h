@@ -129,6 +129,33 @@ inline Decoded decode_mesh(const Glb& glb, int mesh) {
   return out;
 }
 
+/// Building i of a street at 10^6 metres; some have fewer layers.
+inline std::vector<ExportBuilding> street(int n) {
+  std::vector<ExportBuilding> buildings;
+  for (int i = 0; i < n; ++i) {
+    buildings.push_back(
+        three_layers("b" + std::to_string(i),
+                     Vec3(691234.567, 5334567.891, 512.345) + Vec3(20 * (i % 7), 15 * (i / 7), 0)));
+    if (i % 5 == 3) buildings.back().layers.resize(1 + i % 2);
+  }
+  return buildings;
+}
+
+inline const Encoded& find(const std::vector<Encoded>& files, const std::string& path) {
+  for (const Encoded& f : files)
+    if (f.path == path) return f;
+  throw std::runtime_error("no file " + path);
+}
+
+/// Box of a tile in its JSON.
+inline Box box_of(const nlohmann::json& tile) {
+  const std::vector<double> b = tile["boundingVolume"]["box"];
+  Box box;
+  box.min = Vec3(b[0] - b[3], b[1] - b[7], b[2] - b[11]);
+  box.max = Vec3(b[0] + b[3], b[1] + b[7], b[2] + b[11]);
+  return box;
+}
+
 /// Every edge once in each direction after equal positions became one.
 inline bool is_watertight(const Mesh& m) {
   std::map<std::array<double, 3>, int> number;

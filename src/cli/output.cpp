@@ -5,6 +5,9 @@
 #include <set>
 #include <sstream>
 
+#include "../../exporters/archive.h"
+#include "../../exporters/deviation.h"
+#include "../../exporters/engine.h"
 #include "../../exporters/files.h"
 #include "../../exporters/glb.h"
 #include "../../exporters/obj.h"
@@ -31,30 +34,61 @@ ExportBuilding export_building(const Building& b) {
 void add_output_options(CLI::App& app, OutputArguments& a) {
   app.add_option("-o,--out", a.out, "folder to write to")->required();
   app.add_option("--format", a.formats,
-                 "glb, 3dtiles, obj, ply; several with commas (default glb,3dtiles)")
+                 "glb, 3dtiles, 3tz, engine, obj, ply; several with commas (default glb,3dtiles)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"glb", "3dtiles", "obj", "ply"}));
+      ->check(CLI::IsMember({"glb", "3dtiles", "3tz", "engine", "obj", "ply"}));
+  app.add_option_function<std::string>(
+         "--compression",
+         [&a](const std::string& v) {
+           a.compression = v == "none"      ? Compression::kNone
+                           : v == "meshopt" ? Compression::kMeshopt
+                                            : Compression::kDraco;
+         },
+         "of GLBs: draco (default), meshopt or none")
+      ->check(CLI::IsMember({"draco", "meshopt", "none"}));
+  app.add_option("--quantization", a.quantization,
+                 "how far rounding may move a vertex [m], a third of it on the finest layer, "
+                 "default 0.01")
+      ->check(CLI::Range(1e-5, 1.0));
+  app.add_option("--target-sse", a.target_sse,
+                 "the screen-space error that clients refine at [pixels], default 16")
+      ->check(CLI::Range(0.01, 1e4));
+  app.add_option("--pixel-error", a.pixel_error,
+                 "how many pixels a layer may be wrong when it is shown, default 2")
+      ->check(CLI::Range(0.01, 1e4));
 }
 
 void export_scene(Scene& scene, const OutputArguments& a) {
   const std::set<std::string> formats(a.formats.begin(), a.formats.end());
+  const GlbOptions glb{
+      .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
+  const EngineOptions engine{.quantization = a.quantization, .pixel_error = a.pixel_error};
   std::vector<ExportBuilding> buildings(scene.buildings.size());
   parallel_for(buildings.size(), [&](std::size_t i) {
     Stopwatch watch(scene.buildings[i].timings.export_);
     buildings[i] = export_building(scene.buildings[i]);
     if (buildings[i].layers.empty()) return;
-    if (formats.count("glb")) write_file(a.out, encode_building_glb(buildings[i]));
+    measure_visible_errors(buildings[i]);
+    if (formats.count("glb")) write_file(a.out, encode_building_glb(buildings[i], glb));
+    if (formats.count("engine"))
+      for (const Encoded& file : encode_engine_levels(buildings[i], engine))
+        write_file(a.out, file);
     for (const ExportLayer& layer : buildings[i].layers) {
       if (formats.count("obj")) write_file(a.out, encode_obj(buildings[i], layer));
       if (formats.count("ply")) write_file(a.out, encode_ply(buildings[i], layer));
     }
   });
   std::erase_if(buildings, [](const ExportBuilding& b) { return b.layers.empty(); });
-  if (formats.count("3dtiles") && !buildings.empty()) {
-    // tileset.json last: whoever finds it finds the tiles it names.
-    const std::vector<Encoded> files = encode_tileset(buildings);
+  if (buildings.empty()) return;
+  if (formats.count("engine")) write_file(a.out, encode_lods_json(buildings, engine));
+  if (!formats.count("3dtiles") && !formats.count("3tz")) return;
+  const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
+                                                                .quantization = a.quantization,
+                                                                .target_sse = a.target_sse,
+                                                                .pixel_error = a.pixel_error});
+  if (formats.count("3tz")) write_file(a.out, encode_3tz(files));
+  if (formats.count("3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
-  }
 }
 
 void report_problems(const Scene& scene, const Log& log) {

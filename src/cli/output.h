@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../../exporters/exporter.h"
 #include "../pipeline.h"
 #include "cli.h"
 #include "log.h"
@@ -13,6 +14,8 @@ namespace colod::cli {
 struct OutputArguments {
   std::string out;
   std::vector<std::string> formats = {"glb", "3dtiles"};
+  Compression compression = Compression::kDraco;
+  double quantization = 0.01, target_sse = 16, pixel_error = 2;
 };
 
 void add_output_options(CLI::App& app, OutputArguments& a);

@@ -1,0 +1,17 @@
+// How far one surface lies from another, for errors that a viewer can see.
+#pragma once
+
+#include "../src/rays.h"
+#include "exporter.h"
+
+namespace colod {
+
+/// Largest distance from `from` to the scene's surface, over the vertices and a lattice on every
+/// triangle that is no wider than `spacing` (metres; at most 128 steps an edge). 0 for no triangle.
+double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing);
+
+/// Raises each layer's geometric_error to its distance to the finest layer: what a layer adds to
+/// the building shows on the screen as much as what it lacks.
+void measure_visible_errors(ExportBuilding& building);
+
+}  // namespace colod

@@ -1,0 +1,62 @@
+// Based on: EXT_meshopt_compression (ratified), meshoptimizer's codecs of version 0.
+// Differs: nothing; the floats are rounded to a power-of-two grid before, which the codec rewards.
+#include "meshopt.h"
+
+#include <meshoptimizer.h>
+
+namespace colod {
+
+namespace {
+
+const unsigned char* data_of(const std::string& s) {
+  return reinterpret_cast<const unsigned char*>(s.data());
+}
+
+}  // namespace
+
+void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
+                    std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> sorted(indices.size()), remap(vertices);
+  meshopt_optimizeVertexCache(sorted.data(), indices.data(), indices.size(), vertices);
+  const std::size_t used =
+      meshopt_optimizeVertexFetchRemap(remap.data(), sorted.data(), sorted.size(), vertices);
+  meshopt_remapIndexBuffer(indices.data(), sorted.data(), sorted.size(), remap.data());
+  order.assign(used, 0);
+  for (std::uint32_t v = 0; v < vertices; ++v)
+    if (remap[v] != ~0u) order[remap[v]] = v;
+}
+
+std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices,
+                                   std::size_t vertices) {
+  static const bool kHasVersion = (meshopt_encodeIndexVersion(1), true);  // the extension's
+  (void)kHasVersion;
+  std::vector<unsigned char> out(meshopt_encodeIndexBufferBound(indices.size(), vertices));
+  out.resize(meshopt_encodeIndexBuffer(out.data(), out.size(), indices.data(), indices.size()));
+  return {out.begin(), out.end()};
+}
+
+std::string encode_meshopt_vertices(const std::string& bytes, std::size_t stride) {
+  const std::size_t count = bytes.size() / stride;
+  static const bool kHasVersion = (meshopt_encodeVertexVersion(0), true);  // the extension's
+  (void)kHasVersion;
+  std::vector<unsigned char> out(meshopt_encodeVertexBufferBound(count, stride));
+  out.resize(meshopt_encodeVertexBuffer(out.data(), out.size(), bytes.data(), count, stride));
+  return {out.begin(), out.end()};
+}
+
+std::vector<std::uint32_t> decode_meshopt_indices(const std::string& payload, std::size_t count) {
+  std::vector<std::uint32_t> out(count);
+  if (meshopt_decodeIndexBuffer(out.data(), count, 4, data_of(payload), payload.size()) != 0)
+    out.clear();
+  return out;
+}
+
+std::string decode_meshopt_vertices(const std::string& payload, std::size_t count,
+                                    std::size_t stride) {
+  std::string out(count * stride, '\0');
+  if (meshopt_decodeVertexBuffer(out.data(), count, stride, data_of(payload), payload.size()) != 0)
+    out.clear();
+  return out;
+}
+
+}  // namespace colod

@@ -1,0 +1,26 @@
+// The only door to meshoptimizer: EXT_meshopt_compression's payloads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace colod {
+
+/// Reorders triangles for the vertex cache and numbers vertices by first use: `order[new]` = old
+/// vertex. `indices` hold the new numbers.
+void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
+                    std::vector<std::uint32_t>& order);
+
+/// mode TRIANGLES. A decoder may turn triangles.
+std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices);
+
+/// mode ATTRIBUTES; `bytes` holds elements of `stride` bytes, a multiple of 4.
+std::string encode_meshopt_vertices(const std::string& bytes, std::size_t stride);
+
+/// What a client will see; empty when the payload is damaged.
+std::vector<std::uint32_t> decode_meshopt_indices(const std::string& payload, std::size_t count);
+std::string decode_meshopt_vertices(const std::string& payload, std::size_t count,
+                                    std::size_t stride);
+
+}  // namespace colod

@@ -1,0 +1,25 @@
+// EXT_mesh_features and EXT_structural_metadata: which building and layer a vertex belongs to.
+#pragma once
+
+#include "gltf.h"
+
+namespace colod {
+
+/// A row of the property table.
+struct Feature {
+  std::string name;       ///< the building's; of several, the first ones' and how many more
+  int layer = -1;         ///< −1: a stand-in, coarser than layer 0
+  double error = 0;       ///< metres, measured, rounding included
+  std::string source;     ///< file; empty where several differ
+  std::size_t faces = 0;  ///< triangles as written
+};
+
+constexpr int kMostFeatures = 1 << 24;  ///< ids beyond are no exact floats
+
+/// Adds the schema and one property table with these rows; names the extensions.
+void add_features(GltfDocument& document, const std::vector<Feature>& features);
+
+/// What a primitive with ids in _FEATURE_ID_0 says: ids 0 … count − 1 are rows of that table.
+nlohmann::ordered_json feature_ids(std::size_t count);
+
+}  // namespace colod

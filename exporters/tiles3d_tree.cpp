@@ -1,0 +1,153 @@
+// Based on: hierarchical levels of detail over a quadtree, as 3D Tiles writers lay them out.
+// Differs: parted by medians, so that no tile has one child or thousands; what stands above the
+// buildings' own layers has a budget of triangles and a measured error.
+#include "tiles3d_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "../src/parallel.h"
+
+namespace colod {
+
+namespace {
+
+constexpr std::size_t kMostChildren = 16;  // REPLACE waits for all children of a tile
+constexpr std::size_t kMostInCell = 256;   // buildings
+constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm about its middle
+constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
+constexpr std::size_t kMostStandIns = 64;  // in one tile
+
+class Planner {
+ public:
+  explicit Planner(const std::vector<ExportBuilding>& buildings)
+      : buildings_(buildings), boxes_(buildings.size()), singles_(buildings.size()) {
+    parallel_for(buildings.size(), [&](std::size_t i) {
+      for (const Vec3& p : buildings[i].layers.front().mesh.vertices)
+        boxes_[i].extend(Vec3(p + buildings[i].origin));
+      singles_[i] = stand_in_for(buildings[i], static_cast<int>(i));
+    });
+  }
+
+  TilePlan plan() {
+    std::vector<int> all(buildings_.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<StandIn> shown;
+    plan_.root = far_tile(all, "root", false, shown);
+    return std::move(plan_);
+  }
+
+ private:
+  /// Shows stand-ins; `shown` receives them.
+  PlannedTile far_tile(const std::vector<int>& group, const std::string& name, bool is_in_cell,
+                       std::vector<StandIn>& shown) {
+    PlannedTile tile{.name = name, .parts = {}, .children = {}};
+    tile.is_cell = !is_in_cell && is_cell(group);
+    is_in_cell |= tile.is_cell;
+    if (group.size() <= kMostChildren) {
+      tile.children.push_back(near_tile(group, name + ".0"));
+      for (const int b : group) shown.push_back(singles_[b]);
+    } else {
+      int number = 0;
+      for (const std::vector<int>& part : quarter(group)) {
+        const std::string child = name + "." + std::to_string(number++);
+        if (part.size() > kMostChildren || !is_in_cell) {
+          tile.children.push_back(far_tile(part, child, is_in_cell, shown));
+        } else {
+          tile.children.push_back(near_tile(part, child));
+          for (const int b : part) shown.push_back(singles_[b]);
+        }
+      }
+    }
+    shown = merge_stand_ins(std::move(shown), budget(group));
+    for (const StandIn& box : shown) {
+      plan_.stand_ins.push_back(mesh_of(box));
+      tile.parts.push_back({box.buildings, -1, &plan_.stand_ins.back(), box.origin, box.error});
+    }
+    return tile;
+  }
+
+  /// Shows the buildings' coarsest layers.
+  PlannedTile near_tile(const std::vector<int>& group, const std::string& name) const {
+    PlannedTile tile{.name = name, .parts = {}, .children = {}};
+    const bool has_finer = std::any_of(group.begin(), group.end(),
+                                       [&](int b) { return buildings_[b].layers.size() > 1; });
+    for (const int b : group) {
+      tile.parts.push_back(part_of(b, 0));
+      // A building without a finer layer is replaced by itself.
+      if (has_finer) tile.children.push_back(chain(b, buildings_[b].layers.size() > 1));
+    }
+    tile.is_finest = !has_finer;
+    return tile;
+  }
+
+  /// The building's layers from `level` on, each the only child of the coarser one.
+  PlannedTile chain(int b, std::size_t level) const {
+    const ExportBuilding& building = buildings_[b];
+    PlannedTile tile{
+        .name = building.name + ".layer" + std::to_string(building.layers[level].layer),
+        .parts = {part_of(b, level)},
+        .children = {}};
+    tile.is_finest = level + 1 == building.layers.size();
+    if (!tile.is_finest) tile.children.push_back(chain(b, level + 1));
+    return tile;
+  }
+
+  TilePart part_of(int b, std::size_t level) const {
+    const ExportLayer& layer = buildings_[b].layers[level];
+    return {{b}, layer.layer, &layer.mesh, buildings_[b].origin, layer.geometric_error};
+  }
+
+  std::size_t budget(const std::vector<int>& group) const {
+    double finest = 0;
+    for (const int b : group)
+      finest += static_cast<double>(buildings_[b].layers.back().mesh.triangles.size());
+    const auto boxes = static_cast<std::size_t>(kStandInShare * finest / kStandInTriangles);
+    return std::clamp<std::size_t>(boxes, 1, kMostStandIns);
+  }
+
+  Vec3 extent(const std::vector<int>& group) const {
+    Box box;
+    for (const int b : group) box.extend(boxes_[b]);
+    return box.size();
+  }
+
+  bool is_cell(const std::vector<int>& group) const {
+    const bool is_small =
+        group.size() <= kMostInCell && extent(group).head<2>().maxCoeff() <= kWidestCell;
+    return is_small || group.size() <= kMostChildren;
+  }
+
+  /// Four groups of equal size by halving along the longer side, then across it. Ties go by place
+  /// in the list.
+  std::vector<std::vector<int>> quarter(const std::vector<int>& group) const {
+    const auto halve = [&](std::vector<int> all, int axis) {
+      std::stable_sort(all.begin(), all.end(), [&](int a, int b) {
+        return boxes_[a].center()[axis] < boxes_[b].center()[axis];
+      });
+      const auto half = all.begin() + static_cast<long>((all.size() + 1) / 2);
+      return std::array{std::vector<int>(all.begin(), half), std::vector<int>(half, all.end())};
+    };
+    const Vec3 size = extent(group);
+    const int first = size.x() >= size.y() ? 0 : 1;
+    std::vector<std::vector<int>> out;
+    for (const std::vector<int>& side : halve(group, first))
+      for (const std::vector<int>& part : halve(side, 1 - first)) out.push_back(part);
+    for (std::vector<int>& part : out) std::sort(part.begin(), part.end());
+    return out;
+  }
+
+  const std::vector<ExportBuilding>& buildings_;
+  std::vector<Box> boxes_;        // of the coarsest layers, world
+  std::vector<StandIn> singles_;  // one a building
+  TilePlan plan_;
+};
+
+}  // namespace
+
+TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings) {
+  return Planner(buildings).plan();
+}
+
+}  // namespace colod

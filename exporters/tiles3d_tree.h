@@ -1,0 +1,41 @@
+// Which tile shows what: a tree over buildings, before anything is encoded.
+#pragma once
+
+#include <deque>
+
+#include "exporter.h"
+#include "tiles3d_standins.h"
+
+namespace colod {
+
+/// One feature of a tile's content.
+struct TilePart {
+  std::vector<int> buildings;         ///< rising; one, unless a stand-in covers several
+  int layer = -1;                     ///< −1: a stand-in, coarser than layer 0
+  const PolygonMesh* mesh = nullptr;  ///< about `origin`
+  Vec3 origin = Vec3::Zero();         ///< world
+  double error = 0;                   ///< metres, measured
+};
+
+struct PlannedTile {
+  std::string name;
+  std::vector<TilePart> parts;
+  std::vector<PlannedTile> children;
+  bool is_cell = false;    ///< a tileset of its own, in its own frame
+  bool is_finest = false;  ///< what nothing refines: a finer grid
+};
+
+struct TilePlan {
+  std::deque<PolygonMesh> stand_ins;  ///< what parts without a layer point to
+  PlannedTile root;
+};
+
+/// From the root down: stand-ins, each tile's lighter than those of its children together; below
+/// them groups of up to 16 buildings in their coarsest layers, and below a group one chain of finer
+/// layers a building, so that REPLACE never waits for more than 16. Groups part by medians along
+/// the longer side and then across: every inner tile has four children. Subtrees of up to 256
+/// buildings and a kilometre become cells when the whole is larger. `buildings` not empty, each
+/// with a layer; the plan points into them.
+TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings);
+
+}  // namespace colod

@@ -1,0 +1,228 @@
+// The tree, stand-ins, cells and places of tilesets; exporters.test.cpp looks into single tiles.
+#include "../exporters/tiles3d.h"
+
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "../exporters/deviation.h"
+#include "../exporters/tiles3d_standins.h"
+#include "../exporters/tiles3d_tree.h"
+#include "exporters_helpers.h"
+
+using namespace colod;
+using namespace colod::test;
+using Json = nlohmann::json;
+
+namespace {
+
+using Transform = std::array<double, 16>;
+constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+Transform product(const Transform& a, const Transform& b) {
+  Transform out{};
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      for (int k = 0; k < 4; ++k) out[4 * c + r] += a[4 * k + r] * b[4 * c + k];
+  return out;
+}
+
+Vec3 apply(const Transform& t, const Vec3& p) {
+  Vec3 out;
+  for (int r = 0; r < 3; ++r)
+    out[r] = t[r] * p.x() + t[4 + r] * p.y() + t[8 + r] * p.z() + t[12 + r];
+  return out;
+}
+
+/// A tile as a client meets it: external tilesets opened, transforms multiplied.
+struct Met {
+  Json tile;
+  Transform transform;
+  std::string folder;
+  double above;  // the parent's error
+  int depth;
+};
+
+std::vector<Met> walk(const std::vector<Encoded>& files) {
+  std::vector<Met> out;
+  std::vector<Met> open = {{Json::parse(files.front().bytes)["root"], kIdentity, "", 1e300, 0}};
+  while (!open.empty()) {
+    Met met = open.back();
+    open.pop_back();
+    if (met.tile.contains("transform"))
+      met.transform = product(met.transform, met.tile["transform"].get<Transform>());
+    out.push_back(met);
+    const double error = met.tile["geometricError"];
+    const std::string uri = met.tile["content"]["uri"];
+    if (uri.ends_with(".json")) {
+      const std::string folder = uri.substr(0, uri.rfind('/') + 1);
+      open.push_back({Json::parse(find(files, uri).bytes)["root"], met.transform, folder, error,
+                      met.depth + 1});
+    }
+    for (const Json& child : met.tile.value("children", Json::array()))
+      open.push_back({child, met.transform, met.folder, error, met.depth + 1});
+  }
+  return out;
+}
+
+std::size_t triangles_of(const Encoded& file) {
+  const Json json = parse_glb(file.bytes).json;
+  return json["accessors"][json["meshes"][0]["primitives"][0]["indices"].get<int>()]["count"]
+             .get<std::size_t>() /
+         3;
+}
+
+/// A street of closed terraces with more detail than boxes have.
+std::vector<ExportBuilding> detailed_street(int n) {
+  std::vector<ExportBuilding> buildings = street(n);
+  for (ExportBuilding& b : buildings) {
+    Mesh mesh = gable_house(12.3, 8.1, 5.7, 3.3);
+    for (int k = 0; k < 40; ++k)
+      mesh = join(mesh, box_mesh({0.3 * k, 8.2, 1}, {0.3 * k + 0.2, 8.4, 2}));
+    b.layers.back().mesh = as_polygons(mesh);
+  }
+  return buildings;
+}
+
+}  // namespace
+
+TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
+  for (const double angle : {0.0, 0.4, 1.2}) {
+    Mesh mesh = box_mesh({-6, -4, 0}, {6, 4, 7});
+    for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * p;
+    const ExportBuilding b{"box", "", {100, 200, 3}, {{0, as_polygons(mesh), 0.25}}};
+    const StandIn box = stand_in_for(b, 5);
+    CHECK(box.buildings == std::vector<int>{5});
+    CHECK(box.error == Approx(0.25).margin(1e-5));
+    CHECK((box.origin - Vec3(100, 200, 3)).norm() < 1e-6);
+    CHECK(box.half.x() * box.half.y() == Approx(24));
+    CHECK(box.half.z() == Approx(7));
+  }
+}
+
+TEST_CASE("no vertex of a building is farther from its stand-in than the error says") {
+  const ExportBuilding house = three_layers("house", Vec3::Zero());
+  const StandIn box = stand_in_for(house, 0);
+  const RayScene scene(mesh_of(box).mesh());
+  for (const Vec3& p : house.layers.back().mesh.vertices)
+    if (p.z() > 0.1) CHECK(scene.nearest(p - box.origin).distance <= box.error);
+  CHECK(box.error < 4);
+  const RayScene finest(house.layers.back().mesh.mesh());
+  for (const Vec3& p : mesh_of(box).vertices)
+    CHECK(finest.nearest(p + box.origin).distance <= box.error);
+}
+
+TEST_CASE("merging stand-ins keeps every building and adds up errors") {
+  std::vector<StandIn> boxes;
+  for (const ExportBuilding& b : street(12))
+    boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size())));
+  const double before = boxes[0].error;
+  for (const std::size_t most : {7u, 3u, 1u}) {
+    boxes = merge_stand_ins(std::move(boxes), most);
+    CHECK(boxes.size() == most);
+    std::vector<int> all;
+    for (const StandIn& box : boxes)
+      all.insert(all.end(), box.buildings.begin(), box.buildings.end());
+    std::sort(all.begin(), all.end());
+    std::vector<int> expected(12);
+    std::iota(expected.begin(), expected.end(), 0);
+    CHECK(all == expected);
+    CHECK(std::max_element(boxes.begin(), boxes.end(), [](const StandIn& a, const StandIn& b) {
+            return a.error < b.error;
+          })->error > before);
+  }
+}
+
+TEST_CASE("a stand-in's walls and top face outwards") {
+  const StandIn box{{0}, Vec3::Zero(), 0.3, {3, 2, 5}, 0};
+  const PolygonMesh mesh = mesh_of(box);
+  CHECK(mesh.triangles.size() == kStandInTriangles);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 n = face_cross(mesh.mesh(), mesh.triangles[t]);
+    CHECK(n.dot(mesh.vertices[mesh.triangles[t][0]] - Vec3(0, 0, 2.5)) > 0);
+    CHECK(n.normalized().dot(mesh.facets[mesh.facet_of_triangle[t]].normal) > 0.999);
+  }
+}
+
+TEST_CASE("what a layer adds counts as its error as much as what it lacks") {
+  ExportBuilding house = three_layers("house", Vec3::Zero());
+  house.layers[0].mesh = as_polygons(box_mesh({0, -3, 0}, {12.3, 8.1, 7.1}));
+  house.layers[0].geometric_error = 0.5;
+  measure_visible_errors(house);
+  CHECK(house.layers[0].geometric_error == Approx(3).margin(0.5));
+  CHECK(house.layers[1].geometric_error == Approx(0.9).margin(1e-6));
+  CHECK(house.layers[2].geometric_error == 0.05);
+}
+
+TEST_CASE("at the far end stand at most 5 % of the finest triangles and bytes") {
+  const std::vector<ExportBuilding> buildings = detailed_street(25);
+  const std::vector<Encoded> files = encode_tileset(buildings);
+  double triangles = 0, bytes = 0;
+  for (const Met& met : walk(files))
+    if (met.tile["geometricError"] == 0) {
+      const Encoded& file = find(files, met.tile["content"]["uri"]);
+      triangles += static_cast<double>(triangles_of(file));
+      bytes += static_cast<double>(file.bytes.size());
+    }
+  CHECK(triangles_of(find(files, "tiles/root.glb")) <= 0.05 * triangles);
+  CHECK(find(files, "tiles/root.glb").bytes.size() <= 0.05 * bytes);
+}
+
+TEST_CASE("beyond 256 buildings cells are tilesets of their own; errors fall, boxes nest") {
+  const std::vector<ExportBuilding> buildings = street(300);
+  const std::vector<Encoded> files = encode_tileset(buildings);
+  std::size_t cells = 0;
+  std::set<std::string> finest;
+  for (const Met& met : walk(files)) {
+    const std::string uri = met.tile["content"]["uri"];
+    CHECK(met.tile["geometricError"].get<double>() < met.above);
+    CHECK((met.tile.contains("children") || uri.ends_with(".json") ||
+           met.tile["geometricError"] == 0));
+    CHECK(met.tile.value("children", Json::array()).size() <= 16);
+    if (uri.ends_with(".json")) ++cells;
+    for (const Json& child : met.tile.value("children", Json::array())) {
+      Box inner = box_of(child), moved;
+      const Transform t = child.value("transform", kIdentity);
+      for (const double x : {inner.min.x(), inner.max.x()})
+        for (const double y : {inner.min.y(), inner.max.y()})
+          for (const double z : {inner.min.z(), inner.max.z()}) moved.extend(apply(t, {x, y, z}));
+      const Box outer = box_of(met.tile);
+      CHECK((moved.min - outer.min).minCoeff() >= -1e-9);
+      CHECK((outer.max - moved.max).minCoeff() >= -1e-9);
+    }
+    if (met.tile["geometricError"] == 0 && met.tile.contains("extras"))
+      finest.insert(met.tile["extras"]["building"].get<std::string>());
+  }
+  CHECK(cells == 4);
+  CHECK(finest.size() == 300);
+}
+
+TEST_CASE("with a place on Earth every vertex lands where its world point belongs") {
+  // A map with turn, scale and curvature, as a projection has.
+  const auto to_ecef = [](const Vec3& p) {
+    const Vec3 q = p - Vec3(691234, 5334567, 512);
+    const double sag = (q.x() * q.x() + q.y() * q.y()) / 12.8e6;
+    return Vec3(Vec3(3.9e6, 0.8e6, 4.9e6) + Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) *
+                                                Vec3(1.0004 * q.x(), 1.0004 * q.y(), q.z() - sag));
+  };
+  const std::vector<ExportBuilding> buildings = street(300);
+  const auto files = encode_tileset(buildings, {.placement = {to_ecef, "test"}});
+  CHECK(Json::parse(files.front().bytes)["asset"]["extras"]["crs"] == "test");
+  std::map<std::string, const ExportBuilding*> by_name;
+  for (const ExportBuilding& b : buildings) by_name[b.name] = &b;
+  int checked = 0;
+  for (const Met& met : walk(files)) {
+    if (!met.tile.contains("extras") || met.tile["geometricError"] != 0) continue;
+    const ExportBuilding& b = *by_name.at(met.tile["extras"]["building"]);
+    const Glb glb =
+        parse_glb(find(files, met.folder + met.tile["content"]["uri"].get<std::string>()).bytes);
+    const Decoded decoded = decode_mesh(glb, 0);
+    Box seen, expected;
+    for (const Vec3& p : decoded.mesh.vertices)
+      seen.extend(apply(met.transform, {p.x(), -p.z(), p.y()}));
+    for (const Vec3& p : b.layers.back().mesh.vertices) expected.extend(to_ecef(p + b.origin));
+    CHECK((seen.min - expected.min).norm() < 0.01);
+    CHECK((seen.max - expected.max).norm() < 0.01);
+    ++checked;
+  }
+  CHECK(checked == 300);
+}
