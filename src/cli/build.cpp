@@ -32,7 +32,7 @@ int build(const BuildArguments& a) {
   Scene scene = build_scene(
       inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
       a.options, depot, [&](auto&&... args) { log.progress(args...); });
-  export_scene(scene, a.output);
+  export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), a.output, log);
 }

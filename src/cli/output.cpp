@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "../../exporters/obj.h"
 #include "../../exporters/tiles3d.h"
 #include "../error.h"
+#include "../georeference.h"
 #include "../parallel.h"
 #include "../report.h"
 #include "../stopwatch.h"
@@ -27,6 +29,46 @@ ExportBuilding export_building(const Building& b) {
     if (layer.failure.empty())
       result.layers.push_back({layer.layer, layer.mesh, layer.geometric_error});
   return result;
+}
+
+/// What the files beside all sources say alike. Where they contradict each other or cannot be read,
+/// nothing, with a warning: never an invented place.
+std::optional<Georeference> georeference_of_sources(const Scene& scene, const Log& log) {
+  std::optional<Georeference> found;
+  std::set<std::string> folders;
+  for (const Building& b : scene.buildings) {
+    const std::string folder = std::filesystem::path(b.source.path).parent_path().string();
+    if (!folders.insert(folder).second) continue;
+    try {
+      const auto here = georeference_beside(b.source.path);
+      if (folders.size() == 1)
+        found = here;
+      else if (found.has_value() != here.has_value() ||
+               (found && (found->crs != here->crs || found->offset != here->offset)))
+        throw Error(Stage::kInput, folder, "lies elsewhere on Earth than the other sources");
+    } catch (const Error& error) {
+      log.message(Level::kWarning,
+                  std::string(error.what()) + "; the tileset stays local: use --crs and --origin");
+      return {};
+    }
+  }
+  return found;
+}
+
+/// Where the tileset stands, said in the log.
+Placement place(const Scene& scene, const OutputArguments& a, const Vec3& probe, const Log& log) {
+  std::optional<Georeference> g = georeference_from_options(a.crs, a.origin);
+  if (!g && a.crs.empty()) g = georeference_of_sources(scene, log);
+  if (!g) {
+    log.message(Level::kInfo,
+                "no --crs, --origin or file beside the input says where this is: the tileset is "
+                "local, not placed on Earth");
+    return {};
+  }
+  const EarthMap map = place_on_earth(*g, probe);
+  for (const std::string& w : map.warnings) log.message(Level::kWarning, w);
+  log.message(Level::kInfo, "the tileset is placed on Earth: " + map.name + ", from " + g->source);
+  return {map.to_ecef, map.name};
 }
 
 }  // namespace
@@ -50,6 +92,13 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
                  "how far rounding may move a vertex [m], a third of it on the finest layer, "
                  "default 0.01")
       ->check(CLI::Range(1e-5, 1.0));
+  app.add_option(
+      "--crs", a.crs,
+      "where on Earth the input is: EPSG:n of a projected system, EPSG:n+m with heights, "
+      "or local; default: what metadata.xml, ODM or Pix4D files beside the input say");
+  app.add_option("--origin", a.origin,
+                 "added to the input's coordinates: easting,northing[,height] in --crs; without "
+                 "--crs latitude,longitude[,height] of the input's origin");
   app.add_option("--target-sse", a.target_sse,
                  "the screen-space error that clients refine at [pixels], default 16")
       ->check(CLI::Range(0.01, 1e4));
@@ -58,7 +107,7 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
       ->check(CLI::Range(0.01, 1e4));
 }
 
-void export_scene(Scene& scene, const OutputArguments& a) {
+void export_scene(Scene& scene, const OutputArguments& a, const Log& log) {
   const std::set<std::string> formats(a.formats.begin(), a.formats.end());
   const GlbOptions glb{
       .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
@@ -82,10 +131,12 @@ void export_scene(Scene& scene, const OutputArguments& a) {
   if (buildings.empty()) return;
   if (formats.count("engine")) write_file(a.out, encode_lods_json(buildings, engine));
   if (!formats.count("3dtiles") && !formats.count("3tz")) return;
+  const Placement placement = place(scene, a, buildings.front().origin, log);
   const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
                                                                 .quantization = a.quantization,
                                                                 .target_sse = a.target_sse,
-                                                                .pixel_error = a.pixel_error});
+                                                                .pixel_error = a.pixel_error,
+                                                                .placement = placement});
   if (formats.count("3tz")) write_file(a.out, encode_3tz(files));
   if (formats.count("3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
@@ -122,7 +173,7 @@ int finish(const Scene& scene, const Options& options, double seconds, const Out
   std::ostringstream summary;
   summary << done << " of " << scene.buildings.size() + scene.failures.size() << " buildings in "
           << std::fixed << std::setprecision(1) << seconds << " s, written to " << a.out
-          << " (layer 0 is the coarsest; coordinates are local, not placed on Earth)";
+          << " (layer 0 is the coarsest)";
   log.message(Level::kInfo, summary.str());
   return exit_code(scene);
 }

@@ -16,12 +16,14 @@ struct OutputArguments {
   std::vector<std::string> formats = {"glb", "3dtiles"};
   Compression compression = Compression::kDraco;
   double quantization = 0.01, target_sse = 16, pixel_error = 2;
+  std::string crs, origin;  ///< empty: what lies beside the sources says
 };
 
 void add_output_options(CLI::App& app, OutputArguments& a);
 
-/// Everything but report.json; notes the seconds in each building's timings. Throws Error{kOutput}.
-void export_scene(Scene& scene, const OutputArguments& a);
+/// Everything but report.json; says where on Earth the tileset is, if anywhere; notes the seconds
+/// in each building's timings. Throws Error{kOutput}.
+void export_scene(Scene& scene, const OutputArguments& a, const Log& log);
 
 /// Failures as errors, the rest as warnings, one line each.
 void report_problems(const Scene& scene, const Log& log);

@@ -152,15 +152,16 @@ int mesh(const StageArguments& a) {
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
   limit_threads(a.run.threads);
+  const Log log = a.run.log();
   std::vector<Store> stores = open_all(a.inputs);
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   stores.front().get_coanalysis(scene);
   check_exportable(scene);
   make_folder(a.output.out);
-  export_scene(scene, a.output);
+  export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, stores.front().options(), seconds.count(), a.output, a.run.log());
+  return finish(scene, stores.front().options(), seconds.count(), a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
