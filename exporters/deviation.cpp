@@ -34,15 +34,25 @@ double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing)
 
 void measure_visible_errors(ExportBuilding& building) {
   if (building.layers.empty()) return;
-  const Mesh finest = building.layers.back().mesh.mesh();
-  if (finest.faces.empty()) return;
-  const RayScene scene(finest);
-  const double spacing = std::max(kFinestStep, bounding_box(finest.vertices).diagonal() / kSteps);
-  double least = building.layers.back().geometric_error;
-  for (std::size_t i = building.layers.size() - 1; i-- > 0;) {
-    ExportLayer& layer = building.layers[i];
-    const double added = one_sided_deviation(layer.mesh.mesh(), scene, spacing);
-    least = layer.geometric_error = std::max({layer.geometric_error, added, least});
+  std::vector<Mesh> meshes;
+  std::vector<RayScene> scenes;
+  for (const ExportLayer& layer : building.layers) {
+    meshes.push_back(layer.mesh.mesh());
+    scenes.emplace_back(meshes.back());
+  }
+  const std::size_t finest = meshes.size() - 1;
+  const double spacing =
+      std::max(kFinestStep, bounding_box(meshes[finest].vertices).diagonal() / kSteps);
+  double least = building.layers[finest].geometric_error;
+  for (std::size_t i = finest; i-- > 0;) {
+    double& error = building.layers[i].geometric_error;
+    error = std::max(error, least);
+    for (const std::size_t other : {i + 1, finest}) {
+      if (meshes[i].faces.empty() || meshes[other].faces.empty()) continue;
+      error = std::max({error, one_sided_deviation(meshes[i], scenes[other], spacing),
+                        one_sided_deviation(meshes[other], scenes[i], spacing)});
+    }
+    least = error;
   }
 }
 

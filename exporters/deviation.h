@@ -10,8 +10,8 @@ namespace colod {
 /// triangle that is no wider than `spacing` (metres; at most 128 steps an edge). 0 for no triangle.
 double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing);
 
-/// Raises each layer's geometric_error to its distance to the finest layer: what a layer adds to
-/// the building shows on the screen as much as what it lacks.
+/// Raises each layer's geometric_error to its distance, both ways, to the next finer layer and to
+/// the finest one: where a client switches, what a layer adds shows as much as what it lacks.
 void measure_visible_errors(ExportBuilding& building);
 
 }  // namespace colod

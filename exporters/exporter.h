@@ -27,8 +27,8 @@ struct ExportLayer {
   int layer = 0;  ///< 0 = coarsest
   PolygonMesh mesh;
   double geometric_error = 0;  ///< metres, measured: the one-sided Hausdorff distance source →
-                               ///< layer and, after measure_visible_errors, layer → finest layer;
-                               ///< never less than a finer layer's
+                               ///< layer and, after measure_visible_errors, to finer layers both
+                               ///< ways; never less than a finer layer's
 };
 
 struct ExportBuilding {

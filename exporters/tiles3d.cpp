@@ -123,6 +123,8 @@ void encode_content(const Scene& scene, Content& content) {
     append(merged, flat);
   }
   GltfDocument document = start_gltf();
+  if (!frame.is_on_earth())  // z up, metres; on Earth a tile's transform says it
+    document.json["asset"]["extras"]["origin"] = vec_json(frame.origin());
   Box seen;
   Json primitive = add_primitive(document, merged, grid, scene.options.compression, &seen);
   primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());

@@ -180,12 +180,15 @@ double cost(const StandIn& a, const StandIn& b) {
 }  // namespace
 
 StandIn stand_in_for(const ExportBuilding& building, int index) {
+  const Mesh coarsest = building.layers.front().mesh.mesh();
   const Mesh finest = building.layers.back().mesh.mesh();
-  StandIn box = least_box_about(building.layers.front().mesh.vertices);
-  const RayScene scene(finest);
+  StandIn box = least_box_about(coarsest.vertices);
+  const RayScene coarse_scene(coarsest), fine_scene(finest);
   const double spacing =
       std::max(kFinestStep, bounding_box(finest.vertices).diagonal() / (4 * kLattice));
-  const std::vector<Vec3> points = points_on(finest, spacing);
+  std::vector<Vec3> points = points_on(finest, spacing);
+  const std::vector<Vec3> more = points_on(coarsest, spacing);  // what it gives way to
+  points.insert(points.end(), more.begin(), more.end());
   const double height = box.half.z();
   double least = std::numeric_limits<double>::infinity();
   StandIn best;
@@ -193,7 +196,8 @@ StandIn stand_in_for(const ExportBuilding& building, int index) {
     box.half.z() = std::max(kLeastHalf, share * height);
     double lacking = 0, added = 0;
     for (const Vec3& p : points) lacking = std::max(lacking, distance(box, p));
-    for (const Vec3& p : lattice(box)) added = std::max(added, scene.nearest(p).distance);
+    for (const Vec3& p : lattice(box))
+      added = std::max({added, fine_scene.nearest(p).distance, coarse_scene.nearest(p).distance});
     box.error = std::max(lacking + building.layers.back().geometric_error, added);
     if (box.error < least) best = box, least = box.error;
   }

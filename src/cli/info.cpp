@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../exporters/check.h"
 #include "../error.h"
 #include "../metrics.h"
 #include "../parallel.h"
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
   std::string file;
+  bool is_check = false;
   ReadOptions read;
 };
 
@@ -72,7 +74,19 @@ Json tileset_json(const std::string& path) {
   return json;
 }
 
+/// The faults as JSON; exit code 1 when there is one.
+int check(const std::string& path) {
+  const std::vector<Finding> findings = check_output(path);
+  Json list = Json::array();
+  for (const Finding& f : findings)
+    list.push_back({{"code", f.code}, {"where", f.where}, {"message", f.message}});
+  const Json json = {{"file", path}, {"faults", list.size()}, {"findings", list}};
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  return findings.empty() ? 0 : 1;
+}
+
 int info(const InfoArguments& a) {
+  if (a.is_check) return check(a.file);
   std::string file = a.file;
   if (std::filesystem::is_directory(file))
     file = (std::filesystem::path(file) / "tileset.json").string();
@@ -101,6 +115,8 @@ Run add_info(CLI::App& app) {
   app.add_option("FILE", a->file,
                  "mesh, points, GLB, tileset.json or a folder that colod build wrote")
       ->required();
+  app.add_flag("--check", a->is_check,
+               "check a GLB, a tileset or a folder that colod build wrote; exit code 1 on a fault");
   add_input_options(app, a->read);
   return [a] { return info(*a); };
 }

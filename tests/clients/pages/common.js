@@ -1,0 +1,25 @@
+// Shared by the pages: what is drawn, as numbers.
+
+/** Pixels of a canvas that differ clearly from its corner's. The canvas keeps its drawing buffer. */
+export function drawnPixels(canvas) {
+  const copy = document.createElement('canvas');
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);
+  const data = context.getImageData(0, 0, copy.width, copy.height).data;
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4)
+    if (Math.abs(data[i] - data[0]) + Math.abs(data[i + 1] - data[1]) + Math.abs(data[i + 2] - data[2]) > 24) ++count;
+  return count;
+}
+
+/** Resolves when `settled()` held for ten frames on end; rejects after three minutes. */
+export async function settle(settled) {
+  const end = performance.now() + 180000;
+  for (let calm = 0; calm < 10;) {
+    await new Promise((done) => requestAnimationFrame(done));
+    calm = settled() ? calm + 1 : 0;
+    if (performance.now() > end) throw new Error('not settled in time');
+  }
+}
