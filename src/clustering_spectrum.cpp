@@ -22,6 +22,7 @@
 #include <cmath>
 #include <random>
 
+#include "clustering_neighbours.h"
 #include "parallel.h"
 
 namespace colod {
@@ -50,26 +51,20 @@ Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, const st
   return scale.asDiagonal() * a * scale.asDiagonal();
 }
 
-// Each segment's most similar ones, ties by index; an edge counts when either end names it.
+// An edge counts when either end names the other.
 Sparse sparse_affinity(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
                        double eta) {
   const std::size_t n = ids.size();
-  using Entry = std::pair<double, std::size_t>;
-  std::vector<std::vector<Entry>> nearest(n);
-  parallel_for(n, [&](std::size_t i) {
-    std::vector<Entry> all;
-    for (std::size_t j = 0; j < n; ++j)
-      if (j != i) all.push_back({-similarity(segments, ids[i], ids[j], eta), j});
-    const auto end = all.begin() + std::min<std::size_t>(kNeighbours, all.size());
-    std::partial_sort(all.begin(), end, all.end());
-    nearest[i].assign(all.begin(), end);
-  });
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < n; ++i) {
-    entries.emplace_back(i, i, 1.0);
-    for (const auto& [negative, j] : nearest[i]) {
-      entries.emplace_back(i, j, -negative);
-      entries.emplace_back(j, i, -negative);
+  {
+    const auto nearest = nearest_neighbours(segments, ids, kNeighbours, eta);
+    entries.reserve(n * (2 * kNeighbours + 1));
+    for (std::size_t i = 0; i < n; ++i) {
+      entries.emplace_back(i, i, 1.0);
+      for (const Neighbour& near : nearest[i]) {
+        entries.emplace_back(i, near.index, near.similarity);
+        entries.emplace_back(near.index, i, near.similarity);
+      }
     }
   }
   Sparse s(n, n);

@@ -14,6 +14,10 @@
 // and a Lagrangian upper bound; where they do not meet and at most `exact_segments` segments are to
 // be decided, lp_solve gets the whole program.
 //
+// Beyond `exact_similarities` segments to be decided, segments are compared with prototypes: then
+// `objective` is proven to be no more than E_0 and the bound no less than the optimum, so that the
+// gap counts what the prototypes lose (selection_prototypes.cpp).
+//
 // Notation: selection_model.h.
 #include "selection.h"
 
@@ -34,9 +38,10 @@ namespace {
 
 constexpr double kOptimalGap = 1e-7;  // of the objective: less is rounding
 constexpr int kMaxSteps = 400;        // of the bound
-constexpr double kStepWork = 4e9;     // pairs of items looked at by all steps together
-constexpr double kStartWork = 2e8;    // pairs of items by all starts together
-constexpr int kPolishRounds = 8;
+constexpr double kStepWork = 4e9;     // items × prototypes looked at by all steps together
+constexpr double kStartWork = 5e6;    // by all starts together, but 3 there are
+constexpr double kPolishWork = 2e8;   // nodes × items × prototypes in a round
+constexpr int kPolishRounds = 8, kMaxBlockNodes = 400, kMinBlockNodes = 20;
 
 std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& buildings) {
   std::vector<std::vector<char>> kept;
@@ -44,11 +49,20 @@ std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& bu
   return kept;
 }
 
+double work(const Model& model) { return std::max(1.0, static_cast<double>(model.sim.size())); }
+
+int block_nodes(const Model& model) {
+  return static_cast<int>(
+      std::clamp(kPolishWork / work(model), double(kMinBlockNodes), double(kMaxBlockNodes)));
+}
+
+int start_count(const Model& model, const SelectionOptions& options) {
+  const int most = static_cast<int>(std::min(1e6, kStartWork / work(model)));
+  return std::clamp(options.starts, 1, std::max(3, most));
+}
+
 // The best of the starts, each improved; the first of equals.
-Choice best_ascent(const Model& model, const SelectionOptions& options) {
-  const double pairs = static_cast<double>(model.size()) * model.size();
-  const int most = std::max(1, static_cast<int>(std::min(1e6, kStartWork / std::max(1.0, pairs))));
-  const int starts = std::clamp(options.starts, 1, std::max(3, most));
+Choice best_ascent(const Model& model, const SelectionOptions& options, int starts) {
   std::vector<Choice> found(starts);
   std::vector<double> value(starts);
   parallel_for(starts, [&](std::size_t i) {
@@ -56,7 +70,7 @@ Choice best_ascent(const Model& model, const SelectionOptions& options) {
     value[i] = objective(model, found[i]);
   });
   const auto best = std::max_element(value.begin(), value.end()) - value.begin();
-  return polish(model, found[best], kPolishRounds);
+  return polish(model, found[best], kPolishRounds, block_nodes(model));
 }
 
 struct Solved {
@@ -64,22 +78,42 @@ struct Solved {
   double bound;
 };
 
-Solved solve_by_ascent(const Model& model, const SelectionOptions& options) {
-  const double pairs = std::max(1.0, static_cast<double>(model.size()) * model.size());
-  const int steps = static_cast<int>(std::clamp(kStepWork / pairs, 10.0, double(kMaxSteps)));
-  Choice x = best_ascent(model, options);
-  Bound bound = lagrangian_bound(model, x, steps);
-  const Choice polished = polish(model, bound.best, kPolishRounds);
-  x = objective(model, polished) > objective(model, x) ? polished : x;
+double relative_gap(double bound, double value) {
+  return (bound - value) / std::max(1.0, std::abs(value));
+}
+
+Solved solve_by_ascent(const Model& model, const SelectionOptions& options, double gap,
+                       int starts) {
+  const int steps = static_cast<int>(std::clamp(kStepWork / work(model), 10.0, double(kMaxSteps)));
+  Choice x = best_ascent(model, options, starts);
+  Bound bound = lagrangian_bound(model, x, steps, gap);
+  if (bound.best != x) {
+    const Choice polished = polish(model, bound.best, kPolishRounds, block_nodes(model));
+    x = objective(model, polished) > objective(model, x) ? polished : x;
+  }
   return {x, std::max(bound.value, objective(model, x))};
+}
+
+// Where a gap is good enough, one start may reach it. With prototypes more starts would not: what
+// they lose stays.
+Solved solve_within(const Model& model, const SelectionOptions& options, double gap, int& starts) {
+  starts = gap > 0 && model.is_exact ? 1 : start_count(model, options);
+  const Solved first = solve_by_ascent(model, options, gap, starts);
+  const double value = objective(model, first.x);
+  if (!(gap > 0) || !model.is_exact || relative_gap(first.bound, value) <= gap) return first;
+  starts = start_count(model, options);
+  Choice x = best_ascent(model, options, starts);
+  if (objective(model, x) < value) x = first.x;
+  return {x, std::max(first.bound, objective(model, x))};
 }
 
 // lp_solve is asked only where the bound does not meet the ascent's choice, and believed only if
 // its choice is no worse.
 Solved solve(const Model& model, const SelectionOptions& options, Selection& result) {
-  const Solved ascent = solve_by_ascent(model, options);
+  const bool is_small = model.is_exact && model.size() <= options.exact_segments;
+  const Solved ascent = solve_within(model, options, is_small ? 0 : options.gap, result.starts);
   const double value = objective(model, ascent.x);
-  if (model.size() > options.exact_segments || ascent.bound - value <= kOptimalGap) return ascent;
+  if (!is_small || ascent.bound - value <= kOptimalGap) return ascent;
   const WholeSolution whole = solve_whole(model);
   if (whole.is_proven && objective(model, whole.x) >= value - kOptimalGap)
     return {whole.x, objective(model, whole.x)};
@@ -183,7 +217,8 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
     result.is_layer0[model.items[k].building][model.items[k].segment] = !solved.x[k];
   result.objective = objective(model, solved.x);
   result.bound = solved.bound;
-  result.gap = (result.bound - result.objective) / std::max(1.0, std::abs(result.objective));
+  result.is_exact = model.is_exact;
+  result.gap = relative_gap(result.bound, result.objective);
   result.status = result.gap <= kOptimalGap ? SelectionStatus::kOptimal : SelectionStatus::kGap;
   if (result.gap > options.gap_warning) {
     char text[120];

@@ -27,7 +27,12 @@ struct SelectionOptions {
   double main_share = 0.02;  ///< robust: after the optimum segments that enclose at least this
                              ///< share of their building's voxels join layer 0, and lesser ones
                              ///< leave it while f_r > 0.95 holds; 0: the optimum as it is
-  double gap_warning = 0.05;  ///< a greater gap is warned of
+  double gap = 0.001;  ///< good enough: stop as soon as the gap is proven to be no more; up to
+                       ///< exact_segments the optimum is proven whatever this is
+  double gap_warning = 0.05;      ///< a greater gap is warned of
+  int exact_similarities = 1500;  ///< up to this many segments that layer 0 could do without, all
+                                  ///< pairs are compared; beyond, segments and prototypes
+  int prototypes = 256;           ///< more: a smaller gap, for time and memory in proportion
 };
 
 enum class SelectionStatus {
@@ -40,16 +45,19 @@ const char* to_string(SelectionStatus status);
 struct Selection {
   std::vector<std::vector<char>> is_layer0;  ///< [building][segment], after adding and removing
   int added = 0, removed = 0;  ///< segments, after the optimum (SelectionOptions::main_share)
-  double objective = 0;        ///< E_0 of the result of the optimisation
-  double bound = 0;            ///< proven upper bound on E_0
-  double gap = 0;              ///< (bound − objective) / max(1, |objective|)
+  int starts = 0;              ///< of the ascent
+  bool is_exact = true;  ///< all pairs compared: `objective` is E_0 and not a lower bound on it
+  double objective = 0;  ///< E_0 of the result of the optimisation, or proven to be no more
+  double bound = 0;      ///< proven upper bound on E_0
+  double gap = 0;        ///< (bound − objective) / max(1, |objective|)
   SelectionStatus status = SelectionStatus::kEmpty;
   double seconds = 0;
   std::vector<std::string> warnings;
 };
 
-/// Every building keeps at least one segment (if it has any). Deterministic; uses threads. Memory 8
-/// bytes × (segments that layer 0 could do without)². Not for concurrent calls (lp_solve).
+/// Every building keeps at least one segment (if it has any). Deterministic; uses threads. Memory
+/// grows with the square of the segments that layer 0 could do without up to `exact_similarities`
+/// (8 bytes a pair), from there with their number. Not for concurrent calls (lp_solve).
 Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                         const SelectionOptions& options = {});
 

@@ -11,7 +11,7 @@
 //
 // Differs: the same for both rules.
 //
-// Notation: D, K, U as above; m marginal loss; q = profit − m.
+// Notation: D, K, U as above; m marginal loss; q prototype.
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -25,10 +25,10 @@ double Offer::value(const std::vector<int>& set) const {
   std::vector<float> best(n, 0.0f);
   for (const int k : set) {
     const float* row = model->row(k);
-    for (std::size_t t = 0; t < n; ++t) best[t] = std::max(best[t], row[t]);
+    for (std::size_t q = 0; q < n; ++q) best[q] = std::max(best[q], row[q]);
   }
   double sum = 0;
-  for (std::size_t t = 0; t < n; ++t) sum += weights[t] * best[t];
+  for (std::size_t q = 0; q < n; ++q) sum += weights[q] * best[q];
   return sum;
 }
 
@@ -41,8 +41,7 @@ constexpr double kTolerance = 1e-10;
 
 class BlockSearch {
  public:
-  BlockSearch(const Block& block, const std::vector<double>& profit, const Offer* offer,
-              int max_nodes)
+  BlockSearch(const Block& block, std::span<const double> profit, const Offer* offer, int max_nodes)
       : block_(block),
         profit_(profit),
         offer_(offer),
@@ -85,7 +84,7 @@ class BlockSearch {
     return loss;
   }
 
-  double profit(int local) const { return profit_[block_.first + local]; }
+  double profit(int local) const { return profit_[local]; }
   double worth(int local) const { return profit(local) - marginal_[local]; }
 
   std::vector<int> with_fate(bool is_undecided_too) const {
@@ -178,7 +177,7 @@ class BlockSearch {
   }
 
   const Block& block_;
-  const std::vector<double>& profit_;
+  std::span<const double> profit_;
   const Offer* offer_;
   int nodes_left_;
   std::vector<Fate> fate_;
@@ -188,7 +187,7 @@ class BlockSearch {
 
 }  // namespace
 
-BlockSolution solve_block(const Block& block, const std::vector<double>& profit, const Offer* offer,
+BlockSolution solve_block(const Block& block, std::span<const double> profit, const Offer* offer,
                           int max_nodes) {
   return BlockSearch(block, profit, offer, max_nodes).run();
 }

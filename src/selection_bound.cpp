@@ -1,27 +1,32 @@
 // Based on: Geoffrion, "Lagrangean relaxation for integer programming", 1974; Held, Wolfe, Crowder,
 // "Validation of subgradient optimization", 1974 (Polyak's step).
 //
-// The bound. With c_kt = weight_k sim(k, t), layer 0 is
-//   max Σ_k gain_k x_k − loss(x) + Σ_{k,t} c_kt y_kt
-//   s.t. y_kt ≤ x_t (1),   Σ_{t∈j} y_kt ≤ x_k for every other block j,   y ≥ 0,   loss_i ≤
-//   capacity_i
+// The bound. With w_k the item's high weight, s_tq = sim(t, q), q_k the item's prototype and i(k)
+// its block, layer 0 is
+//   max Σ_k gain_k x_k − loss(x) + Σ_k w_k Σ_{j≠i(k)} Σ_{t∈j} s_{t q_k} y_kt
+//   s.t. y_kt ≤ x_t (1),   Σ_{t∈j} y_kt ≤ x_k for every other block j,   y ≥ 0,
+//        loss_i ≤ capacity_i
 // (for a given x the best y puts all of x_k on the most similar dropped t: the maximum in f_co).
-// For any μ ≥ 0, adding Σ μ_kt (x_t − y_kt) to the objective and forgetting (1) gives
-//   L(μ) = max_x Σ_k p_k x_k − loss(x),
-//   p_k = gain_k + Σ_{j≠i} max(0, max_{t∈j} c_kt − μ_kt) + Σ_{t∉i} μ_tk.
+// For any ν ≥ 0, adding Σ w_k ν_{t q_k} (x_t − y_kt) to the objective and forgetting (1) gives
+//   L(ν) = max_x Σ_k p_k x_k − loss(x),
+//   p_k = gain_k + w_k Σ_{j≠i(k)} max(0, max_{t∈j} s_{t q_k} − ν_{t q_k})
+//         + Σ_q ν_kq Σ_{t: q_t = q, i(t)≠i(k)} w_t.
 // Every feasible (x, y) of the program stays feasible and is worth no less, as x_t − y_kt ≥ 0:
-// hence E_0 ≤ constants + L(μ). L falls apart into one knapsack a block, solved whole (not
-// fractionally: the bound may lie below that of the linear program); where a knapsack's node limit
-// is hit its own upper bound takes its place, which keeps L's side of the inequality. Each step's
-// value is thus a bound, and the least is kept. x_t − y_kt is a subgradient of L; μ follows it
-// downhill.
+// hence E_0 ≤ constants + L(ν). Items of one prototype share their multipliers, which restricts ν
+// and therefore can only weaken the bound. L falls apart into one knapsack a block, solved whole
+// (not fractionally: the bound may lie below that of the linear program); where a knapsack's node
+// limit is hit its own upper bound takes its place, which keeps L's side of the inequality. Each
+// step's value is thus a bound, and the least is kept. The derivative of L by ν_tq is
+//   x_t Ω_q − [t is taken for q by its block] X_q,   Ω_q = Σ w_k, X_q = Σ w_k x_k
+// over the items k of q in other blocks than t's; ν follows it downhill in units of Ω_q.
 //
 // The knapsacks' sets are feasible choices: every few steps one is improved by the block ascent.
 //
 // Differs: the same for both rules; the paper reports no bound.
 //
-// Notation: μ multipliers, c, p, L as above; y is kept as the one t taken in each (k, j), or −1.
+// Notation: ν multipliers, L, p, Ω, X as above; `who`: the one t taken for each (block, q), or −1.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -35,126 +40,185 @@ constexpr int kKnapsackNodes = 200;
 constexpr int kStepsPerAscent = 40;
 constexpr int kPatience = 12;          // steps without a better bound before the step shrinks
 constexpr double kLeastFactor = 1e-3;  // of the step: below, the bound stands still
+constexpr int kProgressSteps = 30;     // in these
+constexpr double kProgress = 0.03;  // the gap has to shrink by this share of it, or the bound stays
 constexpr double kRounding = 1e-9;
 
 class Relaxation {
  public:
   explicit Relaxation(const Model& model)
-      : model_(model), n_(model.items.size()), mu_(n_ * n_, 0.0f), taken_(n_ * blocks(), -1) {}
+      : model_(model),
+        n_(model.prototypes),
+        nu_(model.items.size() * n_, 0.0f),
+        take_(blocks() * n_, 0.0),
+        who_(blocks() * n_, -1),
+        all_(n_, 0.0),
+        dropped_(n_, 0.0) {
+    for (const Item& item : model.items) all_[item.prototype] += item.weight_high;
+  }
 
-  // L(μ) with the constants; fills x and y.
+  // L(ν) with the constants; fills x and y.
   double evaluate() {
-    std::vector<double> profit = column_sums();
     parallel_for(
-        n_, [&](std::size_t k) { profit[k] += model_.items[k].gain + take(k); }, 16);
-    std::vector<BlockSolution> solutions(blocks());
-    parallel_for(blocks(), [&](std::size_t i) {
-      solutions[i] = solve_block(model_.blocks[i], profit, nullptr, kKnapsackNodes);
+        blocks(), [&](std::size_t j) { take(j); }, 4);
+    std::vector<double> total(n_, 0.0);  // Σ_j of what is taken from j
+    parallel_ranges(n_, 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = 0; j < blocks(); ++j)
+        for (std::size_t q = begin; q < end; ++q) total[q] += take_[j * n_ + q];
     });
+    std::vector<BlockSolution> solutions(blocks());
+    parallel_for(
+        blocks(),
+        [&](std::size_t i) {
+          solutions[i] = solve_block(model_.blocks[i], profits(i, total), nullptr, kKnapsackNodes);
+        },
+        4);
     double value = 0;
-    x_.assign(n_, 0);
+    x_.assign(model_.items.size(), 0);
+    dropped_.assign(n_, 0.0);
     for (std::size_t i = 0; i < blocks(); ++i) {
       value += model_.blocks[i].constant + solutions[i].bound;
-      for (const int k : solutions[i].dropped) x_[k] = 1;
+      for (const int k : solutions[i].dropped) {
+        x_[k] = 1;
+        dropped_[model_.items[k].prototype] += model_.items[k].weight_high;
+      }
     }
     return value;
   }
 
-  // Σ g² over the entries that a step may change.
+  // Σ h² over the entries that a step may change, h being the derivative in units of Ω_q: where ν
+  // and y are 0 a step down changes nothing.
   double squared_subgradient() {
-    std::vector<double> rows(n_, 0.0);
+    std::vector<double> sums(blocks(), 0.0);
     parallel_for(
-        n_, [&](std::size_t k) { rows[k] = squared_row(k); }, 16);
+        blocks(),
+        [&](std::size_t i) {
+          const Derivative d = derivative(i, 1);
+          const int* who = who_.data() + i * n_;
+          for (int t = first(i); t < end(i); ++t) {
+            const float *nu = nu_.data() + t * n_, own = x_[t] ? 1.0f : 0.0f;
+            std::array<double, 4> sum{};  // four chains of additions instead of one
+            for (std::size_t q = 0; q < n_; ++q) {
+              const float taken = who[q] == t ? 1.0f : 0.0f;
+              const float h = nu[q] > 0 || taken > 0 ? own * d.rise[q] - taken * d.fall[q] : 0.0f;
+              sum[q % 4] += h * h;
+            }
+            sums[i] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+          }
+        },
+        4);
     double sum = 0;
-    for (const double r : rows) sum += r;
+    for (const double s : sums) sum += s;
     return sum;
   }
 
   void step(double length) {
     parallel_for(
-        n_, [&](std::size_t k) { step_row(k, static_cast<float>(length)); }, 16);
+        blocks(),
+        [&](std::size_t i) {
+          const Derivative d = derivative(i, length);
+          const int* who = who_.data() + i * n_;
+          for (int t = first(i); t < end(i); ++t) {
+            float* nu = nu_.data() + t * n_;
+            const float own = x_[t] ? 1.0f : 0.0f;
+            for (std::size_t q = 0; q < n_; ++q) {
+              const float taken = who[q] == t ? 1.0f : 0.0f;
+              nu[q] = std::max(0.0f, nu[q] - (own * d.rise[q] - taken * d.fall[q]));
+            }
+          }
+        },
+        4);
   }
 
   const Choice& choice() const { return x_; }
 
  private:
+  // By ν_tq: `rise` where t is dropped, less `fall` where it is taken.
+  struct Derivative {
+    std::vector<float> rise, fall;
+  };
+
   std::size_t blocks() const { return model_.blocks.size(); }
-  float* mu(std::size_t k) { return mu_.data() + k * n_; }
+  int first(std::size_t i) const { return model_.blocks[i].first; }
+  int end(std::size_t i) const { return model_.blocks[i].first + model_.blocks[i].count; }
 
-  std::vector<double> column_sums() {
-    std::vector<double> sums(n_, 0.0);
-    parallel_ranges(n_, 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = 0; k < n_; ++k) {
-        const float* row = mu(k);
-        for (std::size_t t = begin; t < end; ++t) sums[t] += row[t];
-      }
-    });
-    return sums;
-  }
-
-  // The best y of item k were it dropped: its worth, and which t in taken_. None of its own block,
-  // where similarities are 0.
-  double take(std::size_t k) {
-    const float* sim = model_.row(static_cast<int>(k));
-    const float* multiplier = mu(k);
-    const double weight = model_.items[k].weight;
-    double sum = 0;
-    for (std::size_t j = 0; j < blocks(); ++j) {
-      const Block& block = model_.blocks[j];
-      double best = 0;
-      int who = -1;
-      for (int t = block.first; t < block.first + block.count; ++t) {
-        const double left = weight * sim[t] - multiplier[t];
-        if (left > best) best = left, who = t;
-      }
-      taken_[k * blocks() + j] = who;
-      sum += best;
+  // In units of Ω_q, or with a length the step itself.
+  Derivative derivative(std::size_t i, double length) const {
+    const std::vector<double> all = of_others(i, all_, false);
+    const std::vector<double> dropped = of_others(i, dropped_, true);
+    Derivative d{std::vector<float>(n_, 0.0f), std::vector<float>(n_, 0.0f)};
+    for (std::size_t q = 0; q < n_; ++q) {
+      if (!(all[q] > 0)) continue;
+      const double unit = length == 1 ? 1 / all_[q] : length / (all_[q] * all_[q]);
+      d.rise[q] = static_cast<float>(all[q] * unit);
+      d.fall[q] = static_cast<float>(dropped[q] * unit);
     }
-    return sum;
+    return d;
   }
 
-  // g_kt = x_t − y_kt, y_kt = 1 where k is dropped and takes t. Where μ and y are 0 a step down
-  // changes nothing.
-  template <class Visit>
-  void for_each_entry(std::size_t k, const Visit& visit) {
-    const float* multiplier = mu(k);
-    for (std::size_t j = 0; j < blocks(); ++j) {
-      const Block& block = model_.blocks[j];
-      const int who = x_[k] ? taken_[k * blocks() + j] : -1;
-      for (int t = block.first; t < block.first + block.count; ++t) {
-        if (multiplier[t] == 0 && t != who) continue;
-        const int g = (x_[t] ? 1 : 0) - (t == who ? 1 : 0);
-        if (g != 0) visit(t, g);
+  // What block j gives to each prototype, and which of its items does.
+  void take(std::size_t j) {
+    const Block& block = model_.blocks[j];
+    double* best = take_.data() + j * n_;
+    int* who = who_.data() + j * n_;
+    std::fill(best, best + n_, 0.0);
+    std::fill(who, who + n_, -1);
+    for (int t = block.first; t < block.first + block.count; ++t) {
+      const float* sim = model_.row(t);
+      const float* nu = nu_.data() + t * n_;
+      for (std::size_t q = 0; q < n_; ++q) {
+        const double left = static_cast<double>(sim[q]) - nu[q];
+        who[q] = left > best[q] ? t : who[q];
+        best[q] = std::max(best[q], left);
       }
     }
   }
 
-  double squared_row(std::size_t k) {
-    double sum = 0;
-    for_each_entry(k, [&](int, int) { sum += 1; });
-    return sum;
+  // Sums over the prototypes without block i's own items.
+  std::vector<double> of_others(std::size_t i, const std::vector<double>& sums,
+                                bool is_dropped_only) const {
+    std::vector<double> others = sums;
+    const Block& block = model_.blocks[i];
+    for (int k = block.first; k < block.first + block.count; ++k) {
+      const Item& item = model_.items[k];
+      if (is_dropped_only && !x_[k]) continue;
+      others[item.prototype] = std::max(0.0, others[item.prototype] - item.weight_high);
+    }
+    return others;
   }
 
-  void step_row(std::size_t k, float length) {
-    float* multiplier = mu(k);
-    for_each_entry(k, [&](int t, int g) {
-      multiplier[t] = std::max(0.0f, multiplier[t] - length * static_cast<float>(g));
-    });
+  std::vector<double> profits(std::size_t i, const std::vector<double>& total) const {
+    const Block& block = model_.blocks[i];
+    const std::vector<double> all = of_others(i, all_, false);
+    std::vector<double> profit(block.count);
+    for (int k = block.first; k < block.first + block.count; ++k) {
+      const Item& item = model_.items[k];
+      const double others = total[item.prototype] - take_[i * n_ + item.prototype];
+      double sum = item.gain + item.weight_high * std::max(0.0, others);
+      const float* nu = nu_.data() + k * n_;
+      for (std::size_t q = 0; q < n_; ++q) sum += nu[q] * all[q];
+      profit[k - block.first] = sum;
+    }
+    return profit;
   }
 
   const Model& model_;
-  std::size_t n_;
-  std::vector<float> mu_;   // [k][t]
-  std::vector<int> taken_;  // [k][block]
+  std::size_t n_;                // prototypes
+  std::vector<float> nu_;        // [item][prototype]
+  std::vector<double> take_;     // [block][prototype]
+  std::vector<int> who_;         // [block][prototype]
+  std::vector<double> all_;      // per prototype: weights of its items
+  std::vector<double> dropped_;  // of those that are dropped
   Choice x_;
 };
 
 }  // namespace
 
-Bound lagrangian_bound(const Model& model, const Choice& incumbent, int steps) {
+Bound lagrangian_bound(const Model& model, const Choice& incumbent, int steps, double gap) {
   Bound bound{std::numeric_limits<double>::infinity(), incumbent};
   double value = objective(model, incumbent), factor = 1.0;
   Relaxation relaxation(model);
+  double last = std::numeric_limits<double>::infinity();  // bound at the last look at its progress
   int since_better = 0;
   for (int s = 0; s < steps; ++s) {
     const double l = relaxation.evaluate();
@@ -168,7 +232,11 @@ Bound lagrangian_bound(const Model& model, const Choice& incumbent, int steps) {
       const double e = objective(model, x);
       if (e > value) value = e, bound.best = x;
     }
-    if (bound.value <= value + kRounding * std::max(1.0, std::abs(value))) break;
+    if (bound.value <= value + std::max(gap, kRounding) * std::max(1.0, std::abs(value))) break;
+    if (s % kProgressSteps == kProgressSteps - 1) {
+      if (last - bound.value < kProgress * (bound.value - value)) break;
+      last = bound.value;
+    }
     const double squared = relaxation.squared_subgradient();
     if (squared == 0 || factor < kLeastFactor) break;
     relaxation.step(factor * (l - value) / squared);

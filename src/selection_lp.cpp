@@ -1,10 +1,5 @@
 // Based on: Co-LOD section 3.2 ("a binary linear programming problem"), solved by lp_solve 5.5.
 //
-// Columns: x_k binary; ℓ_c ≥ 0 for each term of several items, ℓ_c ≥ Σ_{k∈c} x_k − (|c| − 1); y_kt
-// ≥ 0 for items of different buildings, y_kt ≤ x_t and Σ_{t∈j} y_kt ≤ x_k. ℓ and y are continuous
-// and yet exact: for a given x the objective pushes ℓ down to 0 or 1 and each y sum onto its most
-// similar t.
-//
 // Differs: the same for both rules.
 //
 // The objective is one free column bounded by a row: with the coefficients in the objective itself
@@ -25,128 +20,59 @@
 namespace colod::selection {
 namespace {
 
-constexpr long kMaxCallbacks = 60000;  // a few seconds at 40 items
-
 struct DeleteProgram {
   void operator()(lprec* lp) const { delete_lp(lp); }
 };
 using Program = std::unique_ptr<lprec, DeleteProgram>;
 
+struct Patience {
+  long left;
+};
+
 int __WINAPI count_callback(lprec*, void* handle) {
-  return ++*static_cast<long*>(handle) > kMaxCallbacks;
+  return --static_cast<Patience*>(handle)->left < 0;
 }
 void __WINAPI drop_message(lprec*, void*, char*) {}
 
-struct Row {
-  std::vector<int> columns;
-  std::vector<double> values;
+void constrain(lprec* lp, LinearProgram::Row row, int kind) {
+  for (int& c : row.columns) ++c;  // its columns count from 1
+  add_constraintex(lp, static_cast<int>(row.columns.size()), row.values.data(), row.columns.data(),
+                   kind, row.most);
+}
 
-  void add(int column, double value) { columns.push_back(column), values.push_back(value); }
-};
-
-// Lays out the columns and writes the rows. Columns count from 1.
-class Writer {
- public:
-  explicit Writer(const Model& model) : model_(model) {
-    columns_ = model.size();
-    for (const Block& b : model.blocks)
-      for (const Term& t : b.terms)
-        if (t.items.size() > 1) ++columns_;
-    first_y_ = columns_ + 1;
-    for (int k = 0; k < model.size(); ++k)
-      for (int t = 0; t < model.size(); ++t) columns_ += has_y(k, t);
-    ++columns_;
-  }
-
-  Program write() {
-    Program lp(make_lp(0, columns_));
-    if (!lp) return lp;
-    set_verbose(lp.get(), NEUTRAL);
-    put_logfunc(lp.get(), drop_message, nullptr);
-    set_add_rowmode(lp.get(), TRUE);
-    Row goal;
-    write_blocks(lp.get(), goal);
-    write_similarities(lp.get(), goal);
-    for (int k = 0; k < model_.size(); ++k) goal.add(k + 1, model_.items[k].gain - lone_loss(k));
-    goal.add(columns_, -1);
-    constrain(lp.get(), goal, GE, 0);
-    set_add_rowmode(lp.get(), FALSE);
-    set_obj(lp.get(), columns_, 1);
-    set_unbounded(lp.get(), columns_);
-    set_maxim(lp.get());
-    for (int k = 1; k <= model_.size(); ++k) set_binary(lp.get(), k, TRUE);
-    set_mip_gap(lp.get(), TRUE, 1e-9);
-    set_mip_gap(lp.get(), FALSE, 1e-9);
-    return lp;
-  }
-
- private:
-  bool has_y(int k, int t) const { return model_.row(k)[t] > 0 && model_.items[k].weight > 0; }
-
-  double lone_loss(int k) const {
-    double loss = 0;
-    for (const Term& t : model_.blocks[model_.items[k].block].terms)
-      if (t.items.size() == 1 && t.items.front() == k) loss += t.share;
-    return loss;
-  }
-
-  static void constrain(lprec* lp, Row& row, int kind, double right) {
-    add_constraintex(lp, static_cast<int>(row.columns.size()), row.values.data(),
-                     row.columns.data(), kind, right);
-  }
-
-  void write_blocks(lprec* lp, Row& goal) const {
-    int column = model_.size();
-    for (const Block& block : model_.blocks) {
-      Row loss;
-      for (int k = block.first; k < block.first + block.count; ++k)
-        if (lone_loss(k) > 0) loss.add(k + 1, lone_loss(k));
-      for (const Term& t : block.terms) {
-        if (t.items.size() == 1) continue;
-        Row all_dropped;
-        for (const int k : t.items) all_dropped.add(k + 1, 1);
-        all_dropped.add(++column, -1);
-        constrain(lp, all_dropped, LE, static_cast<double>(t.items.size()) - 1);
-        loss.add(column, t.share);
-        goal.add(column, -t.share);
-      }
-      if (!loss.columns.empty()) constrain(lp, loss, LE, block.capacity);
-    }
-  }
-
-  void write_similarities(lprec* lp, Row& goal) const {
-    int column = first_y_ - 1;
-    for (int k = 0; k < model_.size(); ++k)
-      for (const Block& block : model_.blocks) {
-        Row sum;
-        for (int t = block.first; t < block.first + block.count; ++t) {
-          if (!has_y(k, t)) continue;
-          ++column;
-          goal.add(column, model_.items[k].weight * model_.row(k)[t]);
-          sum.add(column, 1);
-          Row offered;
-          offered.add(t + 1, -1), offered.add(column, 1);
-          constrain(lp, offered, LE, 0);
-        }
-        if (sum.columns.empty()) continue;
-        sum.add(k + 1, -1);
-        constrain(lp, sum, LE, 0);
-      }
-  }
-
-  const Model& model_;
-  int columns_ = 0, first_y_ = 0;
-};
+// The objective is the last column, bounded by the row "it is at most what the others are worth".
+Program load(const LinearProgram& program) {
+  const int columns = static_cast<int>(program.objective.size()) + 1;
+  Program lp(make_lp(0, columns));
+  if (!lp) return lp;
+  set_verbose(lp.get(), NEUTRAL);
+  put_logfunc(lp.get(), drop_message, nullptr);
+  set_add_rowmode(lp.get(), TRUE);
+  for (const LinearProgram::Row& row : program.rows) constrain(lp.get(), row, LE);
+  LinearProgram::Row goal;
+  for (int c = 0; c + 1 < columns; ++c)
+    if (program.objective[c] != 0) goal.add(c, program.objective[c]);
+  goal.add(columns - 1, -1);
+  constrain(lp.get(), goal, GE);
+  set_add_rowmode(lp.get(), FALSE);
+  set_obj(lp.get(), columns, 1);
+  set_unbounded(lp.get(), columns);
+  set_maxim(lp.get());
+  for (int k = 1; k <= program.binaries; ++k) set_binary(lp.get(), k, TRUE);
+  set_mip_gap(lp.get(), TRUE, 1e-9);
+  set_mip_gap(lp.get(), FALSE, 1e-9);
+  return lp;
+}
 
 }  // namespace
 
-WholeSolution solve_whole(const Model& model) {
+WholeSolution solve_whole(const Model& model, long max_callbacks) {
   WholeSolution whole{Choice(model.items.size(), 0), false};
   if (model.items.empty()) return {{}, true};
-  const Program lp = Writer(model).write();
+  const Program lp = load(write_program(model));
   if (!lp) return whole;
-  long callbacks = 0;
-  put_abortfunc(lp.get(), count_callback, &callbacks);
+  Patience patience{max_callbacks};
+  put_abortfunc(lp.get(), count_callback, &patience);
   const int status = solve(lp.get());
   if (status != OPTIMAL) return whole;
   double* values = nullptr;

@@ -75,8 +75,9 @@ void add_building(const SelectionBuilding& building, int number, const Selection
     if (lone[s] > block.capacity) continue;
     const double share = area > 0 ? sane(building.segments[s].area) / area : 0;
     item_of[s] = model.size();
+    const double weight = similarity_weight * (options.is_paper ? 1 : share);
     model.items.push_back({static_cast<int>(model.blocks.size()), number, s, options.beta * share,
-                           similarity_weight * (options.is_paper ? 1 : share)});
+                           weight, weight, model.size()});
   }
   for (const auto& [set, share] : terms) {
     Term term{{}, share};
@@ -91,6 +92,7 @@ void add_building(const SelectionBuilding& building, int number, const Selection
 
 void fill_similarities(const std::vector<SelectionBuilding>& buildings, double eta, Model& model) {
   const std::size_t n = model.items.size();
+  model.prototypes = n;
   model.sim.assign(n * n, 0.0f);
   const auto descriptor = [&](std::size_t k) -> const Descriptor& {
     return buildings[model.items[k].building].segments[model.items[k].segment];
@@ -121,7 +123,10 @@ Model build_model(const std::vector<SelectionBuilding>& buildings,
   for (std::size_t i = 0; i < buildings.size(); ++i)
     if (!buildings[i].segments.empty())
       add_building(buildings[i], static_cast<int>(i), options, weight, model);
-  fill_similarities(buildings, options.eta, model);
+  if (model.size() <= options.exact_similarities)
+    fill_similarities(buildings, options.eta, model);
+  else
+    share_prototypes(buildings, options.eta, options.prototypes, model);
   return model;
 }
 
@@ -144,16 +149,27 @@ double objective(const Model& model, const Choice& x) {
     if (loss > b.capacity) return -std::numeric_limits<double>::infinity();
     e += b.constant - loss;
   }
+  // best[i][q]: the block's dropped item that is most similar to q; total: over all blocks.
+  const std::size_t width = model.prototypes;
+  std::vector<float> best(model.blocks.size() * width, 0.0f);
+  parallel_for(
+      model.blocks.size(),
+      [&](std::size_t i) {
+        const Block& b = model.blocks[i];
+        float* most = best.data() + i * width;
+        for (int t = b.first; t < b.first + b.count; ++t)
+          for (std::size_t q = 0; q < width && x[t]; ++q)
+            most[q] = std::max(most[q], model.row(t)[q]);
+      },
+      8);
+  std::vector<double> total(width, 0.0);
+  for (std::size_t i = 0; i < model.blocks.size(); ++i)
+    for (std::size_t q = 0; q < width; ++q) total[q] += best[i * width + q];
   for (int k = 0; k < model.size(); ++k) {
     if (!x[k]) continue;
-    double similarity = 0;
-    for (const Block& b : model.blocks) {
-      float best = 0;
-      for (int t = b.first; t < b.first + b.count; ++t)
-        if (x[t]) best = std::max(best, model.row(k)[t]);
-      similarity += best;
-    }
-    e += model.items[k].gain + model.items[k].weight * similarity;
+    const Item& item = model.items[k];
+    const double others = total[item.prototype] - best[item.block * width + item.prototype];
+    e += item.gain + item.weight * others;
   }
   return e;
 }

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "../src/clustering_neighbours.h"
 #include "../src/parallel.h"
+#include "selection_helpers.h"
 #include "similarity_helpers.h"
 
 using namespace colod;
@@ -83,6 +85,42 @@ TEST_CASE("beyond the dense limit nearest neighbours keep the kinds") {
   for (std::size_t i = 0; i < segments.size(); ++i)
     wrong += c.layer[i] != 1 + static_cast<int>(i) % 2;
   CHECK(wrong == 0);
+}
+
+TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, similarities exact") {
+  std::mt19937_64 random(5);
+  std::vector<Descriptor> segments;
+  for (int i = 0; i < 600; ++i) segments.push_back(random_descriptor(i % 6, random));
+  std::vector<int> ids(600);
+  for (int i = 0; i < 600; ++i) ids[i] = i;
+  const auto near = nearest_neighbours(segments, ids, 20, 4);
+  int found = 0;
+  for (int i = 0; i < 600; ++i) {
+    std::vector<double> all;
+    for (int j = 0; j < 600; ++j)
+      if (j != i) all.push_back(segment_similarity(segments[i], segments[j], 4));
+    std::sort(all.rbegin(), all.rend());
+    REQUIRE(near[i].size() == 20);
+    for (const Neighbour& n : near[i]) {
+      CHECK(n.index != i);
+      CHECK(n.similarity == Approx(segment_similarity(segments[i], segments[n.index], 4)));
+      found += n.similarity >= all[19] - 1e-12;
+    }
+  }
+  CHECK(found > 0.7 * 600 * 20);
+}
+
+TEST_CASE("nearest neighbours: one, none, all alike, not a number") {
+  std::mt19937_64 random(6);
+  CHECK(nearest_neighbours({}, {}, 5, 4).empty());
+  std::vector<Descriptor> segments(1, of_kind(1, 2, random));
+  CHECK(nearest_neighbours(segments, {0}, 5, 4)[0].empty());
+  segments.assign(300, segments[0]);
+  segments[7].eigenvalues[1] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> ids(300);
+  for (int i = 0; i < 300; ++i) ids[i] = i;
+  const auto near = nearest_neighbours(segments, ids, 5, 4);
+  CHECK(near[8].size() == 5);
 }
 
 TEST_CASE("flat segments go to the layer of their size, without moving the others") {

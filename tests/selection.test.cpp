@@ -114,6 +114,72 @@ TEST_CASE("E_0 of any choice is the paper's formula, and a broken bound is minus
   }
 }
 
+TEST_CASE("prototypes: objective and bound enclose what comparing all pairs finds") {
+  for (const bool is_paper : {false, true})
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      const auto scene = random_scene({.buildings = 12, .segments = 8}, seed);
+      SelectionOptions all = rules(is_paper, 0), few = all;
+      few.exact_similarities = 0, few.prototypes = 24;
+      const Selection exact = select_layer0(scene, all);
+      const Selection shared = select_layer0(scene, few);
+      CHECK(!shared.is_exact);
+      CHECK(exact.is_exact);
+      // E_0 of the choice lies above what is said of it, the optimum below the bound.
+      CHECK(selection_objective(scene, shared.is_layer0, all) >= shared.objective - 1e-6);
+      CHECK(shared.bound >= exact.objective - 1e-6);
+      CHECK(shared.gap >= exact.gap - 1e-6);
+    }
+}
+
+TEST_CASE("as many prototypes as segments lose next to nothing") {
+  const auto scene = random_scene({.buildings = 6, .segments = 6}, 2);
+  SelectionOptions all = rules(false, 0), few = all;
+  few.exact_similarities = 0, few.prototypes = 1000;
+  CHECK(select_layer0(scene, few).objective ==
+        Approx(select_layer0(scene, all).objective).epsilon(0.02));
+}
+
+TEST_CASE("prototypes: nothing finite, all alike, one building") {
+  SelectionOptions few = rules(false, 0);
+  few.exact_similarities = 0;
+  std::mt19937_64 random(1);
+  SelectionBuilding bad, alike;
+  bad.segments.resize(30), alike.segments.assign(30, random_descriptor(2, random));
+  for (Descriptor& d : bad.segments) d.eigenvalues[0] = std::numeric_limits<double>::quiet_NaN();
+  for (int s = 0; s < 30; ++s)
+    bad.coverage.push_back({{s}, 1.0 / 30}), alike.coverage.push_back({{s}, 1.0 / 30});
+  for (const auto& scene : std::vector<std::vector<SelectionBuilding>>{
+           {bad, bad}, {alike, alike, alike}, {alike}, {bad, alike}}) {
+    const Selection s = select_layer0(scene, few);
+    CHECK(std::isfinite(s.objective));
+    CHECK(s.bound >= s.objective);
+    CHECK(s.gap < 0.01);
+  }
+}
+
+TEST_CASE("a gap that is good enough stops early and holds") {
+  const auto scene = random_scene({.buildings = 12, .segments = 10}, 4);
+  SelectionOptions loose = rules(false, 0), tight = loose;
+  loose.gap = 0.05, tight.gap = 0;
+  const Selection a = select_layer0(scene, loose), b = select_layer0(scene, tight);
+  CHECK(a.gap <= 0.05);
+  CHECK(a.starts < b.starts);
+  CHECK(b.gap <= a.gap);
+  CHECK(a.bound >= b.objective - 1e-9);
+}
+
+TEST_CASE("up to 15 binaries: the optimum, called so, whatever gap is good enough") {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const RandomScene shape{.buildings = 2 + static_cast<int>(seed % 4), .segments = 3};
+    const auto scene = random_scene(shape, 100 + seed);
+    SelectionOptions o = rules(seed % 2, 40);
+    o.gap = 0.05;
+    const Selection s = select_layer0(scene, o);
+    CHECK(s.status == SelectionStatus::kOptimal);
+    CHECK(s.objective == Approx(enumerated_optimum(scene, o)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("a block's branch and bound against enumeration, alone and with an offer") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const auto scene = random_scene({.buildings = 2, .segments = 9, .body = 0.7}, seed);
