@@ -23,12 +23,14 @@
 #include <random>
 
 #include "clustering_spectrum.h"
+#include "parallel.h"
 
 namespace colod {
 namespace {
 
 constexpr int kRestarts = 20, kMaxIterations = 100;
 constexpr double kSameEigenvalue = 1e-9;
+constexpr int kVoters = 5;  // of a prior
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
 using Features = Eigen::MatrixXd;  // a segment a row
@@ -180,6 +182,36 @@ void place_flat(const std::vector<Descriptor>& segments, const std::vector<int>&
 }
 
 }  // namespace
+
+Clustering classify_segments(const std::vector<Descriptor>& segments, const Prior& prior,
+                             const ClusteringOptions& options) {
+  std::vector<std::pair<const Descriptor*, int>> known;
+  for (const Prior::PriorBuilding& b : prior.buildings)
+    for (std::size_t s = 0; s < b.segments.size(); ++s)
+      if (b.layer[s] > 0 && b.layer[s] < options.layers)
+        known.push_back({&b.segments[s], b.layer[s]});
+  if (known.empty() || options.layers < 2) {
+    ClusteringOptions by_size = options;
+    by_size.layering = Layering::kSize;
+    return cluster_segments(segments, by_size);
+  }
+  Clustering result;
+  result.layer.assign(segments.size(), 1);
+  parallel_for(segments.size(), [&](std::size_t s) {
+    std::vector<std::pair<double, std::size_t>> nearest;  // −similarity, which
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      const double similarity = segment_similarity(segments[s], *known[i].first, options.eta);
+      if (std::isfinite(similarity)) nearest.push_back({-similarity, i});
+    }
+    const auto end = nearest.begin() + std::min<std::ptrdiff_t>(kVoters, std::ssize(nearest));
+    std::partial_sort(nearest.begin(), end, nearest.end());
+    std::vector<double> votes(options.layers, 0.0);
+    for (auto n = nearest.begin(); n != end; ++n) votes[known[n->second].second] -= n->first;
+    result.layer[s] = std::max(
+        1, static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin()));
+  });
+  return result;
+}
 
 Clustering cluster_segments(const std::vector<Descriptor>& segments,
                             const ClusteringOptions& options) {

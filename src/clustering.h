@@ -39,6 +39,12 @@ struct Clustering {
 Clustering cluster_segments(const std::vector<Descriptor>& segments,
                             const ClusteringOptions& options = {});
 
+/// The layer that a prior gives to segments beyond layer 0: a vote of the 5 most similar segments
+/// beyond its layer 0, by similarity; ties go to the coarser layer. A prior that has none: size
+/// decides. `options.layers` is that of the prior.
+Clustering classify_segments(const std::vector<Descriptor>& segments, const Prior& prior,
+                             const ClusteringOptions& options = {});
+
 struct LayerPlanesOptions {
   bool is_paper = true;  ///< robust: small planes wait for the finest layer
   int layers = 3;        ///< l_n: the finest layer is l_n − 1

@@ -78,7 +78,7 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
-RawFile read_raw(const std::string& path) {
+RawFile read_raw(const std::string& path, int coarser) {
   const std::string e = lower(fs::path(path).extension().string());
   if (!is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
   const std::string bytes = read_bytes(path);
@@ -87,7 +87,7 @@ RawFile read_raw(const std::string& path) {
   if (e == ".off") return mesh_io::read_off(path, bytes);
   if (e == ".stl") return mesh_io::read_stl(path, bytes);
   if (e == ".xyz" || e == ".pwn") return mesh_io::read_xyz(path, bytes, e == ".pwn");
-  return mesh_io::read_gltf(path, bytes);
+  return mesh_io::read_gltf(path, bytes, coarser);
 }
 
 std::string sanitize(const std::string& name) {
@@ -262,7 +262,7 @@ std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
 
 /// Everything a file holds, split as asked. Throws when nothing in it is usable.
 std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
-  RawFile raw = read_raw(path);
+  RawFile raw = read_raw(path, options.coarser);
   check_indices(path, raw);
   place(raw, options);
   std::vector<Source> sources;

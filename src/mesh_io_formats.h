@@ -64,7 +64,7 @@ RawFile read_off(const std::string& path, const std::string& bytes);
 RawFile read_stl(const std::string& path, const std::string& bytes);
 RawFile read_xyz(const std::string& path, const std::string& bytes, bool is_pwn);
 RawFile read_ply(const std::string& path, const std::string& bytes);
-RawFile read_gltf(const std::string& path, const std::string& bytes);
+RawFile read_gltf(const std::string& path, const std::string& bytes, int coarser);
 
 /// Triangles of one polygon, convex or not, with the polygon's own winding: `n - 2` index triples
 /// into `ring`, a closed loop of points. Ear clipping, at most n² tests of a corner.

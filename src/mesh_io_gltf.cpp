@@ -33,7 +33,7 @@ class Reader {
  public:
   Reader(const std::string& path, const tinygltf::Model& model) : path_(path), model_(model) {}
 
-  RawFile read();
+  RawFile read(int coarser);
 
  private:
   [[noreturn]] void fail(const std::string& cause) const { mesh_io::fail(path_, cause); }
@@ -50,6 +50,7 @@ class Reader {
                        const tinygltf::Value& extension) const;
   Primitive read_plain(const tinygltf::Primitive& primitive) const;
   std::vector<int> top_nodes() const;
+  int coarser_node(int node, int levels) const;
   void add_node(RawFile& raw, int node, const Matrix& parent, int part);
   void add_mesh(RawFile& raw, const tinygltf::Mesh& mesh, const Matrix& matrix, int part) const;
 
@@ -249,7 +250,18 @@ std::vector<int> Reader::top_nodes() const {
   return tops;
 }
 
-RawFile Reader::read() {
+/// The node that MSFT_lod names for a node, that many levels down.
+int Reader::coarser_node(int node, int levels) const {
+  if (levels == 0) return node;
+  const auto& extensions = at(model_.nodes, node, "node").extensions;
+  const auto lod = extensions.find("MSFT_lod");
+  if (lod == extensions.end() || !lod->second.Has("ids") ||
+      static_cast<int>(lod->second.Get("ids").ArrayLen()) < levels)
+    fail("has fewer levels of detail");
+  return lod->second.Get("ids").Get(levels - 1).GetNumberAsInt();
+}
+
+RawFile Reader::read(int coarser) {
   RawFile raw;
   raw.is_soup = raw.is_turned = true;
   is_visited_.assign(model_.nodes.size(), 0);
@@ -261,6 +273,7 @@ RawFile Reader::read() {
     above = above * local_matrix(node);  // a wrapper around the buildings
     tops = node.children;
   }
+  for (int& top : tops) top = coarser_node(top, coarser);
   for (const int top : tops) {
     const std::string& name = at(model_.nodes, top, "node").name;
     raw.parts.push_back(name.empty() ? "node" + std::to_string(top) : name);
@@ -346,7 +359,7 @@ bool keep_no_image(tinygltf::Image*, const int, std::string*, std::string*, int,
 
 }  // namespace
 
-RawFile read_gltf(const std::string& path, const std::string& file) {
+RawFile read_gltf(const std::string& path, const std::string& file, int coarser) {
   const bool is_binary = file.compare(0, 4, "glTF") == 0;
   const std::string_view json = json_of(path, file, is_binary);
   if (is_too_deep(json)) fail(path, "JSON nested too deeply");
@@ -372,7 +385,7 @@ RawFile read_gltf(const std::string& path, const std::string& file) {
   for (const std::string& extension : model.extensionsRequired)
     if (extension.find("meshopt") != extension.npos || extension == "EXT_mesh_gpu_instancing")
       fail(path, "needs " + extension + ", which is not read");
-  return Reader(path, model).read();
+  return Reader(path, model).read(coarser);
 }
 
 }  // namespace colod::mesh_io

@@ -36,6 +36,9 @@ const std::vector<OptionInfo>& option_table() {
                             "weight of consistency between buildings in layer 0 (lambda)"),
       row<&Options::eta>("eta", "", 0, 1e6,
                          "weight of shape against scale in the similarity (eta)"),
+      row<&Options::gap>("gap", "", 0, 1,
+                         "layer 0 is good enough when proven to be this near to the best, as a "
+                         "share of it"),
       row<&Options::distance>("distance", "m", 1e-4, 1e3,
                               "how far a region's points may lie from its plane"),
       row<&Options::angle_deg>("angle", "deg", 0.1, 89, "how far a region's normals may deviate"),

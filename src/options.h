@@ -30,6 +30,8 @@ struct Options {
   double beta = 0.3;        ///< weight of simplicity f_s
   double lambda = 0.4;      ///< weight of consistency f_co
   double eta = 4.0;         ///< weight of shape against scale
+  double gap = 0.001;       ///< of layer 0's program: good enough
+  bool is_size_layering = false;  ///< layers beyond 0 by thresholds on size, not by the spectrum
   double distance =
       0.2;  ///< region growing: metres from the plane. Robust: an upper bound (planes.h)
   double angle_deg = 30;  ///< region growing: normals' deviation

@@ -163,23 +163,34 @@ Building segment_building(Turn turn, const Options& options) {
   return b;
 }
 
-void analyze_scene(Scene& scene, const Options& options) {
+void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
   Stopwatch watch(scene.coanalysis_seconds);
+  if (prior && prior->layers != options.layers)
+    throw Error(Stage::kUsage, "--prior",
+                "it has " + std::to_string(prior->layers) + " layers, not " +
+                    std::to_string(options.layers));
+  scene.has_prior = prior != nullptr;
   std::vector<SelectionBuilding> input;
   for (const Building& b : scene.buildings) input.push_back({b.descriptors, b.segments.coverage});
   scene.selection = select_layer0(input, {.is_paper = is_paper(options),
                                           .beta = options.beta,
                                           .lambda = options.lambda,
                                           .eta = options.eta,
-                                          .seed = options.seed});
+                                          .seed = options.seed,
+                                          .gap = options.gap,
+                                          .prior = prior});
   std::vector<Descriptor> rest;
   for (std::size_t i = 0; i < scene.buildings.size(); ++i)
     for (std::size_t s = 0; s < scene.buildings[i].descriptors.size(); ++s)
       if (!scene.selection.is_layer0[i][s]) rest.push_back(scene.buildings[i].descriptors[s]);
-  scene.clustering = cluster_segments(rest, {.is_paper = is_paper(options),
-                                             .layers = options.layers,
-                                             .eta = options.eta,
-                                             .seed = options.seed});
+  const ClusteringOptions clustering{
+      .is_paper = is_paper(options),
+      .layering = options.is_size_layering ? Layering::kSize : Layering::kSpectral,
+      .layers = options.layers,
+      .eta = options.eta,
+      .seed = options.seed};
+  scene.clustering =
+      prior ? classify_segments(rest, *prior, clustering) : cluster_segments(rest, clustering);
   std::size_t next = 0;
   for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
     Building& b = scene.buildings[i];
@@ -217,6 +228,20 @@ void mesh_building(Building& b, const Options& options) {
   }
 }
 
+std::vector<PlacedPart> place_parts(const Building& b, const Source& source, const Truth& truth) {
+  const auto named = std::find_if(truth.begin(), truth.end(), [&](const TruthBuilding& t) {
+    return t.name == source.name;
+  });
+  if (named == truth.end() || b.has_failed()) return {};
+  const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
+  std::vector<Mesh> layers;
+  for (const Layer& layer : b.layers) {
+    layers.push_back(layer.mesh.mesh());
+    for (Vec3& v : layers.back().vertices) v = turn.to_local(v);
+  }
+  return place_parts(source, *named, layers);
+}
+
 void for_each_source(const Inventory& inventory, const Reader& read,
                      const std::function<void(Turn)>& body) {
   const std::vector<std::vector<std::size_t>> positions = positions_by_name(inventory);
@@ -238,7 +263,7 @@ void for_each_source(const Inventory& inventory, const Reader& read,
 }
 
 Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
-                  Depot& depot, const Progress& progress) {
+                  Depot& depot, const Progress& progress, const Prior* prior) {
   Scene scene;
   scene.failures = inventory.failures;
   scene.buildings.resize(inventory.building_count());
@@ -254,7 +279,7 @@ Scene build_scene(const Inventory& inventory, const Reader& read, const Options&
     depot.put(b);
     report(b, "segments");
   });
-  analyze_scene(scene, options);
+  analyze_scene(scene, options, prior);
   done = 0;
   parallel_for(scene.buildings.size(), [&](std::size_t i) {
     Building& b = scene.buildings[i];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clustering.h"
+#include "consistency.h"
 #include "error.h"
 #include "extraction.h"
 #include "frame.h"
@@ -65,6 +66,8 @@ struct Scene {
   Selection selection;
   Clustering clustering;
   double coanalysis_seconds = 0;
+  std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
+  bool has_prior = false;  ///< layers come from another scene that was analysed before
 };
 
 Counts count(const Building& building);
@@ -104,18 +107,26 @@ void for_each_source(const Inventory& inventory, const Reader& read,
 /// Rooms 2 to 5 for one building. Failures are recorded in the building, nothing is thrown.
 Building segment_building(Turn turn, const Options& options);
 
-/// Rooms 6 and 7 over all buildings: sets layer_of_segment.
-void analyze_scene(Scene& scene, const Options& options);
+/// Rooms 6 and 7 over all buildings: sets layer_of_segment. With a prior each building for itself,
+/// by what the prior's scene learnt. Throws Error{kUsage} when its number of layers is another.
+void analyze_scene(Scene& scene, const Options& options, const Prior* prior = nullptr);
 
 /// Rooms 8 and 9 and the measures for one building.
 void mesh_building(Building& building, const Options& options);
 
+/// Holds the layers of a building against a ground truth; `source` is its own in its local frame,
+/// with object numbers. Empty where the truth does not name it or a layer failed. Throws
+/// Error{kInput} when the source's faces carry no object numbers.
+std::vector<PlacedPart> place_parts(const Building& building, const Source& source,
+                                    const Truth& truth);
+
 /// All of it; a file is read when its turn comes. A file that cannot be read any more leaves failed
 /// buildings.
 Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
-                  Depot& depot, const Progress& progress = {});
+                  Depot& depot, const Progress& progress = {},
+                  const Prior* prior = nullptr);
 
 /// All of it on sources in memory.
-Scene build_scene(ReadResult input, const Options& options);
+Scene build_scene(ReadResult input, const Options& options, const Prior* prior = nullptr);
 
 }  // namespace colod

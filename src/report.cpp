@@ -13,6 +13,7 @@ Json parameters_json(const Options& options) {
   Json json;
   json["rules"] = options.rules == Rules::kPaper ? "paper" : "robust";
   json["visibility"] = name_of(options.visibility);
+  json["layering"] = options.is_size_layering ? "size" : "spectral";
   for (const OptionInfo& info : option_table()) {
     if (info.is_integer)
       json[info.name] = static_cast<std::int64_t>(info.get(options));
@@ -43,14 +44,14 @@ Json layer_json(const Layer& layer) {
   return json;
 }
 
-Json building_json(const Building& b) {
+Json building_json(const Building& b, bool has_prior) {
   Json json{{"name", b.source.name},
             {"source", b.source.path},
             {"vertices", b.counts.vertices},
             {"faces", b.counts.faces},
             {"planes", b.counts.planes},
             {"segments", b.segments.segments.size()},
-            {"prior", false},
+            {"prior", has_prior},
             {"diagonal", b.counts.diagonal},
             {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
   json["layers"] = Json::array();
@@ -106,8 +107,11 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
       {"rays", rays},
       {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
   json["coanalysis"] = coanalysis_json(scene);
+  if (!scene.consistency.empty())
+    json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["buildings"] = Json::array();
-  for (const Building& b : scene.buildings) json["buildings"].push_back(building_json(b));
+  for (const Building& b : scene.buildings)
+    json["buildings"].push_back(building_json(b, scene.has_prior));
   json["failures"] = Json::array();
   for (const ReadFailure& f : scene.failures)
     json["failures"].push_back({{"source", f.path}, {"message", f.message}});

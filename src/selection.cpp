@@ -14,6 +14,9 @@
 // and a Lagrangian upper bound; where they do not meet and at most `exact_segments` segments are to
 // be decided, lp_solve gets the whole program.
 //
+// With a prior (the paper's mode for single buildings) I_j − M_j are the prior's segments beyond its
+// layer 0: f_co is linear, and each building's program is on its own.
+//
 // Beyond `exact_similarities` segments to be decided, segments are compared with prototypes: then
 // `objective` is proven to be no more than E_0 and the bound no less than the optimum, so that the
 // gap counts what the prototypes lose (selection_prototypes.cpp).

@@ -33,6 +33,8 @@ struct SelectionOptions {
   int exact_similarities = 1500;  ///< up to this many segments that layer 0 could do without, all
                                   ///< pairs are compared; beyond, segments and prototypes
   int prototypes = 256;           ///< more: a smaller gap, for time and memory in proportion
+  const Prior* prior = nullptr;   ///< f_co compares with what its buildings have beyond layer 0
+                                  ///< instead of with each other: a program of its own a building
 };
 
 enum class SelectionStatus {

@@ -111,19 +111,61 @@ void fill_similarities(const std::vector<SelectionBuilding>& buildings, double e
       8);
 }
 
-}  // namespace
+// With a prior f_co is linear: each item is worth its mean similarity to the prior's buildings.
+void add_prior_gains(const std::vector<SelectionBuilding>& buildings, const Prior& prior, double eta,
+                     Model& model) {
+  std::vector<std::vector<const Descriptor*>> beyond;  // layer 0, per building that has segments
+  for (const Prior::PriorBuilding& b : prior.buildings) {
+    if (b.segments.empty()) continue;
+    beyond.emplace_back();
+    for (std::size_t s = 0; s < b.segments.size(); ++s)
+      if (b.layer[s] > 0) beyond.back().push_back(&b.segments[s]);
+  }
+  parallel_for(model.items.size(), [&](std::size_t k) {
+    Item& item = model.items[k];
+    const Descriptor& own = buildings[item.building].segments[item.segment];
+    double sum = 0;
+    for (const auto& building : beyond) {
+      double best = 0;
+      for (const Descriptor* other : building) {
+        const double s = segment_similarity(own, *other, eta);
+        if (s > best) best = s;  // not for what is not a number
+      }
+      sum += best;
+    }
+    item.gain += item.weight * sum;
+    item.weight = item.weight_high = 0;
+    item.prototype = 0;
+  });
+  model.prototypes = 1;
+  model.sim.assign(model.items.size(), 0.0f);
+}
 
-Model build_model(const std::vector<SelectionBuilding>& buildings,
-                  const SelectionOptions& options) {
+Model add_buildings(const std::vector<SelectionBuilding>& buildings,
+                    const SelectionOptions& options) {
   Model model;
-  int counted = 0;
-  for (const SelectionBuilding& b : buildings) counted += !b.segments.empty();
-  const double others = std::max(1, counted - 1);
+  const auto has_segments = [](const auto& b) { return !b.segments.empty(); };
+  const auto counted = std::count_if(buildings.begin(), buildings.end(), has_segments) - 1;
+  const auto in_prior =
+      options.prior ? std::count_if(options.prior->buildings.begin(),
+                                    options.prior->buildings.end(), has_segments)
+                    : counted;
+  const auto others = static_cast<double>(std::max<std::ptrdiff_t>(1, in_prior));
   const double weight = options.is_paper ? options.lambda : options.lambda / others;
   for (std::size_t i = 0; i < buildings.size(); ++i)
     if (!buildings[i].segments.empty())
       add_building(buildings[i], static_cast<int>(i), options, weight, model);
-  if (model.size() <= options.exact_similarities)
+  return model;
+}
+
+}  // namespace
+
+Model build_model(const std::vector<SelectionBuilding>& buildings,
+                  const SelectionOptions& options) {
+  Model model = add_buildings(buildings, options);
+  if (options.prior)
+    add_prior_gains(buildings, *options.prior, options.eta, model);
+  else if (model.size() <= options.exact_similarities)
     fill_similarities(buildings, options.eta, model);
   else
     share_prototypes(buildings, options.eta, options.prototypes, model);

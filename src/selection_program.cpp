@@ -60,6 +60,7 @@ class Writer {
 
   void write_similarities(int k, const Block& block) {
     const double weight = model_.items[k].weight;
+    if (weight == 0) return;
     Row sum;
     for (int t = block.first; t < block.first + block.count; ++t) {
       const double worth = weight * model_.row(t)[k];

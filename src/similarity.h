@@ -33,6 +33,16 @@ std::vector<Descriptor> describe_segments(const Planes& planes, const Segments& 
                                           const std::string& building,
                                           const DescriptorOptions& options = {});
 
+/// What a scene that was analysed before learnt: the layers of its segments.
+struct Prior {
+  struct PriorBuilding {
+    std::vector<Descriptor> segments;
+    std::vector<int> layer;  ///< per segment, 0..layers − 1
+  };
+  int layers = 0;  ///< l_n of that scene
+  std::vector<PriorBuilding> buildings;
+};
+
 /// dis(s, s') = eta ‖d2 − d2'‖₂ + ‖v_e − v_e'‖₁ / (‖v_e‖₁ + ‖v_e'‖₁). Symmetric, ≥ 0, 0 for equal
 /// descriptors.
 double segment_distance(const Descriptor& a, const Descriptor& b, double eta);

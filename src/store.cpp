@@ -193,7 +193,8 @@ struct FacetRecord {
 
 Json options_json(const Options& o) {
   Json json{{"rules", o.rules == Rules::kPaper ? "paper" : "robust"},
-            {"visibility", name_of(o.visibility)}};
+            {"visibility", name_of(o.visibility)},
+            {"layering", o.is_size_layering ? "size" : "spectral"}};
   for (const OptionInfo& info : option_table()) json[info.name] = info.get(o);
   return json;
 }
@@ -311,6 +312,7 @@ Options Store::options() const {
   read_json(s.text(), impl_->path, "options", [&](const Json& json) {
     options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
     options.visibility = visibility_of(json.value("visibility", "embree"));
+    options.is_size_layering = json.value("layering", "spectral") == "size";
     for (const OptionInfo& info : option_table()) {
       const double value = json.value(info.name, info.get(options));
       if (!(value >= info.min && value <= info.max))
@@ -615,6 +617,37 @@ Building Store::building(const std::string& name) const {
   return b;
 }
 
+Prior Store::prior() const {
+  Prior prior;
+  prior.layers = options().layers;
+  Statement s = impl_->read(
+      "SELECT b.name, s.layer, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, s.d2"
+      " FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, b.name, s.id");
+  std::string last;
+  while (s.step()) {
+    const std::string name = s.text();
+    if (prior.buildings.empty() || name != last) prior.buildings.emplace_back();
+    last = name;
+    if (s.is_null())
+      throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
+    Descriptor d;
+    const auto layer = static_cast<int>(s.integer());
+    d.volume = s.real();
+    d.area = s.real();
+    d.extent = s.real();
+    d.is_flat = s.integer() != 0;
+    d.eigenvalues = s.value<Vec3>();
+    d.d2 = s.value<std::array<double, 64>>();
+    if (layer < 0 || layer >= prior.layers)
+      throw Error(Stage::kInput, impl_->path, "damaged: a segment lies on no layer");
+    prior.buildings.back().segments.push_back(d);
+    prior.buildings.back().layer.push_back(layer);
+  }
+  if (prior.buildings.empty())
+    throw Error(Stage::kInput, impl_->path, "holds no segment to learn from");
+  return prior;
+}
+
 void Store::put_coanalysis(const Scene& scene) {
   std::vector<std::string> warnings = scene.selection.warnings;
   warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
@@ -624,6 +657,7 @@ void Store::put_coanalysis(const Scene& scene) {
                   {"gap", scene.selection.gap},
                   {"status", static_cast<int>(scene.selection.status)},
                   {"seconds", scene.coanalysis_seconds},
+                  {"prior", scene.has_prior},
                   {"warnings", warnings}};
   impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
 }
@@ -638,6 +672,7 @@ void Store::get_coanalysis(Scene& scene) const {
     scene.selection.gap = json.value("gap", 0.0);
     scene.selection.status = static_cast<SelectionStatus>(json.value("status", 0));
     scene.coanalysis_seconds = json.value("seconds", 0.0);
+    scene.has_prior = json.value("prior", false);
     scene.selection.warnings = json.value("warnings", std::vector<std::string>{});
   });
 }
@@ -681,6 +716,8 @@ std::string segments_key(const Source& source, const Options& options) {
   relevant.beta = defaults.beta;
   relevant.lambda = defaults.lambda;
   relevant.eta = defaults.eta;
+  relevant.gap = defaults.gap;
+  relevant.is_size_layering = defaults.is_size_layering;
   const std::string text = options_json(relevant).dump();
   hash.add(text.data(), text.size());
   return hash.hex();

@@ -49,6 +49,9 @@ class Store {
   /// All that is there of a building; timings are not kept.
   Building building(const std::string& name) const;
 
+  /// What the analysed scene learnt. Throws Error{kInput} when it is not analysed.
+  Prior prior() const;
+
   /// What the co-analysis reported, for the report.
   void put_coanalysis(const Scene& scene);
   void get_coanalysis(Scene& scene) const;

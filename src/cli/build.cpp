@@ -1,5 +1,7 @@
 #include <chrono>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "../../exporters/files.h"
 #include "../parallel.h"
@@ -15,10 +17,52 @@ namespace {
 
 struct BuildArguments {
   std::vector<std::string> inputs;
+  std::string prior, truth;
   ReadOptions read;
   Options options;
   OutputArguments output;
   RunArguments run;
+};
+
+/// Holds each building against the truth when its layers are done, and passes everything on.
+class Judge : public Depot {
+ public:
+  Judge(const Truth& truth, Depot& depot) : truth_(truth), depot_(depot) {}
+
+  void put(Building& b) override {
+    {
+      const std::lock_guard lock(mutex_);
+      sources_[b.source.name] = b.source;  // the depot does not keep the faces' objects
+    }
+    depot_.put(b);
+  }
+  void get(Building& b) override { depot_.get(b); }
+  void drop(Building& b) override {
+    std::vector<PlacedPart> parts = place_parts(b, source_of(b), truth_);
+    {
+      const std::lock_guard lock(mutex_);
+      parts_[b.source.name] = std::move(parts);
+    }
+    depot_.drop(b);
+  }
+
+  std::vector<PlacedPart> parts() const {
+    std::vector<PlacedPart> all;
+    for (const auto& [name, parts] : parts_) all.insert(all.end(), parts.begin(), parts.end());
+    return all;
+  }
+
+ private:
+  Source source_of(const Building& b) {
+    const std::lock_guard lock(mutex_);
+    return std::move(sources_[b.source.name]);
+  }
+
+  const Truth& truth_;
+  Depot& depot_;
+  std::mutex mutex_;
+  std::map<std::string, Source> sources_;
+  std::map<std::string, std::vector<PlacedPart>> parts_;
 };
 
 int build(const BuildArguments& a) {
@@ -26,12 +70,17 @@ int build(const BuildArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
+  const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth);
+  const std::optional<Prior> prior = read_prior(a.prior);
   const Inventory inventory = take_inventory(a.inputs, a.read);
   make_folder(a.output.out);  // fails now rather than after all the work
   TemporaryStore depot;
+  Judge judge(truth, depot);
   Scene scene = build_scene(
       inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
-      a.options, depot, [&](auto&&... args) { log.progress(args...); });
+      a.options, truth.empty() ? static_cast<Depot&>(depot) : judge,
+      [&](auto&&... args) { log.progress(args...); }, prior ? &*prior : nullptr);
+  if (!truth.empty()) scene.consistency = tally_parts(judge.parts(), a.options.layers);
   export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), a.output, log);
@@ -46,6 +95,10 @@ Run add_build(CLI::App& app) {
   add_output_options(app, a->output);
   add_input_options(app, a->read);
   add_pipeline_options(app, a->options);
+  add_prior_option(app, a->prior);
+  app.add_option("--truth", a->truth,
+                 "a ground truth of parts: how consistent the layers are goes into report.json")
+      ->check(CLI::ExistingFile);
   add_run_options(app, a->run);
   return [a] { return build(*a); };
 }

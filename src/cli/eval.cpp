@@ -1,7 +1,10 @@
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "../consistency.h"
 #include "../error.h"
 #include "../light_field.h"
 #include "../metrics.h"
@@ -13,7 +16,7 @@ namespace colod::cli {
 namespace {
 
 struct EvalArguments {
-  std::string reference, model;
+  std::string reference, model, truth;
   ReadOptions read;
   DistanceOptions distance;
   bool has_lfd = false;
@@ -28,8 +31,72 @@ int light_fields_apart(const Source& reference, const Source& model) {
                               describe_light_fields(model.mesh));
 }
 
+using Json = nlohmann::ordered_json;
+
+Json read_report(const std::string& folder) {
+  const std::string path = (std::filesystem::path(folder) / "report.json").string();
+  std::ifstream in(path);
+  if (!in)
+    throw Error(Stage::kInput, path, "cannot be opened: name a folder that colod build wrote");
+  try {
+    return Json::parse(in);
+  } catch (const Json::exception& e) {
+    throw Error(Stage::kInput, path, std::string("damaged: ") + e.what());
+  }
+}
+
+/// The layers of a building, coarsest first, in world coordinates.
+std::vector<Mesh> read_layers(const std::string& folder, const std::string& name, int layers) {
+  const std::string stem = (std::filesystem::path(folder) / "buildings" / name).string();
+  std::vector<Mesh> meshes;
+  for (int k = 0; k < layers; ++k) {
+    const std::string text = stem + ".layer" + std::to_string(k);
+    ReadOptions coarser;
+    coarser.coarser = layers - 1 - k;
+    if (std::filesystem::exists(text + ".obj"))
+      meshes.push_back(read_single(text + ".obj").mesh);
+    else if (std::filesystem::exists(text + ".ply"))
+      meshes.push_back(read_single(text + ".ply").mesh);
+    else
+      meshes.push_back(read_single(stem + ".glb", coarser).mesh);
+  }
+  return meshes;
+}
+
+/// Consistency of the layers in a folder that `build` or `export` wrote.
+int eval_truth(const EvalArguments& a) {
+  const Truth truth = read_truth(a.truth);
+  const Json report = read_report(a.reference);
+  std::vector<PlacedPart> parts;
+  int layers = 0, judged = 0;
+  for (const Json& b : report.at("buildings")) {
+    const std::string name = b.at("name"), path = b.at("source");
+    const auto named = std::find_if(truth.begin(), truth.end(),
+                                    [&](const TruthBuilding& t) { return t.name == name; });
+    const auto failed = [](const Json& layer) { return layer.contains("failure"); };
+    if (named == truth.end() || b.at("layers").empty() ||
+        std::any_of(b.at("layers").begin(), b.at("layers").end(), failed))
+      continue;
+    const int own = static_cast<int>(b.at("layers").size());
+    layers = std::max(layers, own), ++judged;
+    const std::vector<Source> sources = read_sources({path}, a.read).sources;
+    const auto source = std::find_if(sources.begin(), sources.end(),
+                                     [&](const Source& s) { return s.name == name; });
+    const Source& shown = source != sources.end() ? *source : sources.at(0);
+    const auto placed = place_parts(shown, *named, read_layers(a.reference, name, own));
+    parts.insert(parts.end(), placed.begin(), placed.end());
+  }
+  const Json json{{"truth", a.truth},
+                  {"buildings", judged},
+                  {"types", Json::parse(consistency_json(tally_parts(parts, layers)))}};
+  std::printf("%s\n", json.dump(2).c_str());
+  return 0;
+}
+
 int eval(const EvalArguments& a) {
   limit_threads(a.threads);
+  if (!a.truth.empty()) return eval_truth(a);
+  if (a.model.empty()) throw Error(Stage::kUsage, "MODEL", "is missing");
   const Source reference = read_single(a.reference, a.read);
   const Source model = read_single(a.model, a.read);
   const Validity validity = check_validity(model.mesh);
@@ -62,9 +129,14 @@ int eval(const EvalArguments& a) {
 
 Run add_eval(CLI::App& app) {
   auto a = std::make_shared<EvalArguments>();
-  app.add_option("REFERENCE", a->reference, "mesh or points that the model stands for (a)")
+  app.add_option("REFERENCE", a->reference,
+                 "mesh or points that the model stands for (a); with --truth: a folder that build "
+                 "wrote")
       ->required();
-  app.add_option("MODEL", a->model, "mesh to judge (b)")->required();
+  app.add_option("MODEL", a->model, "mesh to judge (b); not with --truth");
+  app.add_option("--truth", a->truth,
+                 "truth.json of synth, or labels: on which layer the parts of each kind appear")
+      ->check(CLI::ExistingFile);
   add_input_options(app, a->read);
   app.add_option("--samples", a->distance.samples, "area-uniform samples a side")
       ->check(CLI::Range(1, 100000000));

@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 #include "../error.h"
 #include "../options.h"
+#include "../store.h"
 #include "cli.h"
 #include "log.h"
 
@@ -45,7 +47,18 @@ inline void add_config_option(CLI::App& app) {
       ->check(CLI::ExistingFile);
 }
 
-/// --rules, --visibility and every row of the option table; --rules comes first, since the others'
+inline void add_prior_option(CLI::App& app, std::string& path) {
+  app.add_option("--prior", path,
+                 "an analysed scene file: each building for itself gets the layers it learnt")
+      ->check(CLI::ExistingFile);
+}
+
+inline std::optional<Prior> read_prior(const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  return Store(path, false).prior();
+}
+
+/// --rules, --visibility, --layering and every row of the option table; --rules comes first, since the others'
 /// defaults hang on it.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
@@ -60,6 +73,10 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
          [&options](const std::string& v) { options.visibility = visibility_of(v); },
          "what casts the rays: embree (default), or sweep, the same hits several times faster")
       ->check(CLI::IsMember({"embree", "sweep"}));
+  app.add_option_function<std::string>(
+         "--layering", [&options](const std::string& v) { options.is_size_layering = v == "size"; },
+         "layers beyond 0: spectral (default), or thresholds on size")
+      ->check(CLI::IsMember({"spectral", "size"}));
   for (const OptionInfo& info : option_table()) {
     const auto set = [&options, &info](const double& value) {
       if (info.is_integer &&

@@ -23,6 +23,8 @@ namespace {
 struct StageArguments {
   std::vector<std::string> inputs;  ///< sources (segment) or scene files
   std::string scene;                ///< the scene file that segment writes
+  std::string prior;                ///< an analysed scene file, or empty
+  double gap = -1;                  ///< analyze: instead of the scene file's; negative: not given
   ReadOptions read;
   Options options;
   OutputArguments output;
@@ -113,7 +115,10 @@ int analyze(const StageArguments& a) {
   std::vector<Store> stores = open_all(a.inputs);
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
-  analyze_scene(scene, stores.front().options());
+  Options options = stores.front().options();
+  if (a.gap >= 0) options.gap = a.gap;
+  const std::optional<Prior> prior = read_prior(a.prior);
+  analyze_scene(scene, options, prior ? &*prior : nullptr);
   for (std::size_t i = 0; i < scene.buildings.size(); ++i)
     stores[file_of[i]].put_layers_of_segments(scene.buildings[i]);
   for (Store& store : stores) store.put_coanalysis(scene);
@@ -186,6 +191,9 @@ Run add_segment(CLI::App& app) {
 
 Run add_analyze(CLI::App& app) {
   auto a = add_scene_files(app);
+  add_prior_option(app, a->prior);
+  app.add_option("--gap", a->gap, "layer 0 is good enough when proven to be this near to the best")
+      ->check(CLI::Range(0.0, 1.0));
   return [a] { return analyze(*a); };
 }
 
