@@ -11,11 +11,7 @@
 // layer of the segment that overlaps a part most, where one has an IoU of face area of at least
 // 0.3.
 // --segments writes every segment with its descriptor, layer and part as JSON.
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_policies.h>
-#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <meshoptimizer.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -107,6 +103,16 @@ std::vector<PlacedPart> place_by_segments(const Scene& scene, const Truth& truth
   return placed;
 }
 
+std::vector<PlacedPart> place_by_meshes(const Scene& scene, const Truth& truth) {
+  std::vector<std::vector<PlacedPart>> placed(scene.buildings.size());
+  parallel_for(placed.size(), [&](std::size_t i) {
+    placed[i] = place_parts(scene.buildings[i], scene.buildings[i].source, truth);
+  });
+  std::vector<PlacedPart> all;
+  for (const auto& p : placed) all.insert(all.end(), p.begin(), p.end());
+  return all;
+}
+
 void mesh_all(Scene& scene, const Options& options) {
   parallel_for(scene.buildings.size(), [&](std::size_t i) {
     scene.buildings[i].layers.clear();
@@ -140,35 +146,22 @@ void layer_by_size(Scene& scene, int layers, const Measure& measure) {
     for (int i = 0; i < count[k]; ++i) *order[next++].second = k;
 }
 
+/// Edge collapse by quadrics (meshoptimizer) to about that many faces.
 Mesh collapsed(const Mesh& mesh, std::size_t faces) {
-  using Point = CGAL::Simple_cartesian<double>::Point_3;
-  using Surface = CGAL::Surface_mesh<Point>;
-  namespace Sms = CGAL::Surface_mesh_simplification;
-  Surface surface;
-  std::vector<Surface::Vertex_index> vertices;
+  const Vec3 centre = bounding_box(mesh.vertices).center();
+  std::vector<float> points;
+  std::vector<unsigned> indices, left(3 * mesh.faces.size());
   for (const Vec3& v : mesh.vertices)
-    vertices.push_back(surface.add_vertex(Point(v.x(), v.y(), v.z())));
-  for (const Face& f : mesh.faces)  // what would not be 2-manifold stays out
-    surface.add_face(vertices[f[0]], vertices[f[1]], vertices[f[2]]);
-  using Policies = Sms::GarlandHeckbert_policies<Surface, CGAL::Simple_cartesian<double>>;
-  const Policies policies(surface);
-  const Sms::Count_stop_predicate<Surface> stop(std::max<std::size_t>(6, faces * 3 / 2));
-  Sms::edge_collapse(
-      surface, stop,
-      CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));
-  surface.collect_garbage();
-  Mesh result;
-  for (const auto v : surface.vertices()) {
-    const Point& p = surface.point(v);
-    result.vertices.emplace_back(p.x(), p.y(), p.z());
-  }
-  for (const auto f : surface.faces()) {
-    Face face;
-    int i = 0;
-    for (const auto v : vertices_around_face(surface.halfedge(f), surface))
-      if (i < 3) face[i++] = static_cast<int>(v);
-    result.faces.push_back(face);
-  }
+    for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(v[k] - centre[k]));
+  for (const Face& f : mesh.faces)
+    for (int k = 0; k < 3; ++k) indices.push_back(static_cast<unsigned>(f[k]));
+  left.resize(meshopt_simplify(left.data(), indices.data(), indices.size(), points.data(),
+                               mesh.vertices.size(), 3 * sizeof(float),
+                               3 * std::max<std::size_t>(faces, 4), 1.0f, 0, nullptr));
+  Mesh result{mesh.vertices, {}};
+  for (std::size_t i = 0; i + 2 < left.size(); i += 3)
+    result.faces.push_back(
+        {static_cast<int>(left[i]), static_cast<int>(left[i + 1]), static_cast<int>(left[i + 2])});
   return result;
 }
 
@@ -268,7 +261,7 @@ Result run_method(const std::string& method, Scene& scene, const Truth& truth,
   result.by_segment = tally_parts(place_by_segments(scene, truth, layers), layers);
   if (settings.has_no_meshes) return result;
   mesh_all(scene, settings.options);
-  result.by_mesh = tally_parts(place_parts(scene, truth), layers);
+  result.by_mesh = tally_parts(place_by_meshes(scene, truth), layers);
   return result;
 }
 
@@ -278,7 +271,7 @@ int run(const Settings& settings) {
   Scene scene;
   scene.buildings.resize(input.sources.size());
   parallel_for(scene.buildings.size(), [&](std::size_t i) {
-    scene.buildings[i] = segment_building(std::move(input.sources[i]), settings.options);
+    scene.buildings[i] = segment_building({std::move(input.sources[i]), i, {}}, settings.options);
   });
   analyze_scene(scene, settings.options);
   if (!settings.segments.empty()) write_segments(scene, truth, settings.segments);

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "error.h"
 #include "rays.h"
@@ -21,6 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPresentShare = 0.75;
+constexpr double kNear = 0.25;  // metres at most: a scan has no roof under its dormers, and a
+                                // layer's roof may lie half a relief from them
 constexpr double kNearShare = 0.5;  // of the relief
 constexpr double kSpacing = 0.1;    // metres between samples
 constexpr int kLeastSamples = 20;
@@ -44,6 +46,9 @@ struct SampledPart {
   std::vector<Vec3> samples;
 };
 
+// How near counts as there.
+double reach(const TruthPart& part) { return std::min(kNear, kNearShare * part.depth); }
+
 double distance_to(const RayScene& mesh, const Vec3& x) {
   const NearestPoint near = mesh.nearest(x);
   return near.triangle >= 0 ? near.distance : std::numeric_limits<double>::infinity();
@@ -62,7 +67,7 @@ void keep_telling(SampledPart& part, const RayScene& main_building) {
   }
   std::vector<Vec3> telling;
   for (std::size_t i = 0; i < distance.size(); ++i)
-    if (distance[i] > kNearShare * part.truth.depth) telling.push_back(part.samples[i]);
+    if (distance[i] > reach(part.truth)) telling.push_back(part.samples[i]);
   part.samples = std::move(telling);
 }
 
@@ -88,7 +93,7 @@ std::vector<SampledPart> sample_parts(const Source& source, const TruthBuilding&
 
 bool is_present(const SampledPart& part, const RayScene& mesh) {
   std::size_t near = 0;
-  for (const Vec3& x : part.samples) near += distance_to(mesh, x) <= kNearShare * part.truth.depth;
+  for (const Vec3& x : part.samples) near += distance_to(mesh, x) <= reach(part.truth);
   return static_cast<double>(near) >= kPresentShare * static_cast<double>(part.samples.size());
 }
 

@@ -1,10 +1,10 @@
 // Beside the rooms: given a ground truth of parts, do parts of a kind fall on the same layer in
 // every building?
 //
-// A part counts as present in a mesh when three quarters of its telling samples lie within half its
-// relief of the mesh; telling are points on the part's own faces that are farther than that from
-// the faces of the main building. This needs no segments, so any chain of meshes can be judged. A
-// part appears on the first layer from which on it is present.
+// A part counts as present in a mesh when three quarters of its telling samples lie within its
+// reach of the mesh, which is half its relief, at most 0.25 m; telling are points on the part's own
+// faces that are farther than that from the faces of the main building. This needs no segments, so
+// any chain of meshes can be judged. A part appears on the first layer from which on it is present.
 #pragma once
 
 #include <string>

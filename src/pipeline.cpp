@@ -291,7 +291,7 @@ Scene build_scene(const Inventory& inventory, const Reader& read, const Options&
   return scene;
 }
 
-Scene build_scene(ReadResult input, const Options& options) {
+Scene build_scene(ReadResult input, const Options& options, const Prior* prior) {
   Inventory inventory{{}, std::move(input.failures)};
   for (const Source& s : input.sources) inventory.files.push_back({s.path, {s.name}});
   const Reader take = [&](std::size_t i) {
@@ -300,7 +300,7 @@ Scene build_scene(ReadResult input, const Options& options) {
     return one;
   };
   Depot memory;
-  return build_scene(inventory, take, options, memory);
+  return build_scene(inventory, take, options, memory, {}, prior);
 }
 
 }  // namespace colod

@@ -48,7 +48,8 @@ TEST_CASE("a part appears on the first layer that reaches it and from which on i
   CHECK(first({kBody, test::join(kBody, test::box_mesh({2, -0.9, 1}, {4, 0, 3}))}) == 1);
 }
 
-TEST_CASE("relief that the truth does not tell is measured; what the mesh does not show is unseen") {
+TEST_CASE(
+    "relief that the truth does not tell is measured; what the mesh does not show is unseen") {
   const auto parts = place_parts(house(), truth(-1), {kBody});
   CHECK(parts.at(0).depth == Approx(1).margin(0.1));
   Source bare = house();

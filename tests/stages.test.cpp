@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -55,8 +56,7 @@ bool run(std::vector<std::string> arguments, const std::string& log, int kill_af
   }
   int status = 0;
   if (kill_after_ms > 0) {
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::milliseconds(kill_after_ms);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kill_after_ms);
     while (std::chrono::steady_clock::now() < end) {
       if (waitpid(child, &status, WNOHANG) == child)
         return WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -186,12 +186,12 @@ TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees w
   Folder f;
   const std::string log = f / "log";
   REQUIRE(run({"synth", "-o", f / "synth", "--buildings", "2"}, log));
-  REQUIRE(run({"build", f / "synth", "-o", f / "out", "--ns", "24", "--nr", "24", "--quiet", "--truth",
-               f / "synth/truth.json"},
+  REQUIRE(run({"build", f / "synth", "-o", f / "out", "--ns", "24", "--nr", "24", "--quiet",
+               "--truth", f / "synth/truth.json"},
               log));
   const std::string out = f / "eval";
-  const std::string command = std::string(COLOD_BINARY) + " eval --truth " + (f / "synth/truth.json") +
-                              " " + (f / "out") + " >" + out;
+  const std::string command = std::string(COLOD_BINARY) + " eval --truth " +
+                              (f / "synth/truth.json") + " " + (f / "out") + " >" + out;
   REQUIRE(std::system(command.c_str()) == 0);
   const std::string text = slurp(out), report = slurp(f.path / "out" / "report.json");
   CHECK(text.find("\"on_majority_layer\"") != std::string::npos);
@@ -200,7 +200,8 @@ TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees w
   CHECK(!run({"eval", f / "out"}, log));
 }
 
-TEST_CASE("next to nothing to analyse: one building, twins, all alike, one segment, 1, 2, 5 layers") {
+TEST_CASE(
+    "next to nothing to analyse: one building, twins, all alike, one segment, 1, 2, 5 layers") {
   const auto source = [](const Mesh& mesh, const std::string& name) {
     return test::as_source(mesh, name);
   };
@@ -216,7 +217,8 @@ TEST_CASE("next to nothing to analyse: one building, twins, all alike, one segme
       o.ns = 16, o.nr = 24, o.layers = layers;
       const Scene scene = build_scene({sources, {}}, o);
       for (const Building& b : scene.buildings) {
-        INFO(b.source.name << ", " << layers << " layers of " << sources.size() << " " << b.failure);
+        INFO(b.source.name << ", " << layers << " layers of " << sources.size() << " "
+                           << b.failure);
         REQUIRE(b.layers.size() == static_cast<std::size_t>(layers));
         for (const Layer& layer : b.layers) CHECK(layer.validity.is_watertight);
         for (const int l : b.layer_of_segment) CHECK((l >= 0 && l < layers));
