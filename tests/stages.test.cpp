@@ -154,7 +154,8 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   fs::create_directories(f / "city");
   for (int i = 0; i < 4; ++i)
     write_off(f.path / "city" / ("h" + std::to_string(i) + ".off"), house(i));
-  write_off(f.path / "one.off", house(2));
+  fs::create_directories(f / "alone");
+  write_off(f.path / "alone" / "h2.off", house(2));
   const std::string log = f / "log", city = f / "city.colod", one = f / "one.colod";
   const std::vector<std::string> small{"--ns", "16", "--nr", "24", "--quiet"};
   const auto with = [&](std::vector<std::string> a) {
@@ -162,23 +163,23 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
     return a;
   };
   REQUIRE(run(with({"segment", f / "city", "-o", city}), log));
-  CHECK(!run(with({"build", f / "one.off", "-o", f / "x", "--prior", city}), log));
+  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city}), log));
   CHECK(slurp(log).find("not analysed") != std::string::npos);
   REQUIRE(run({"analyze", city}, log));
-  REQUIRE(run(with({"build", f / "one.off", "-o", f / "out", "--prior", city}), log));
+  REQUIRE(run(with({"build", f / "alone/h2.off", "-o", f / "out", "--prior", city}), log));
   CHECK(slurp(f.path / "out" / "report.json").find("\"prior\": true") != std::string::npos);
-  CHECK(!run(with({"build", f / "one.off", "-o", f / "x", "--prior", city, "--layers", "4"}), log));
+  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city, "--layers", "4"}), log));
 
-  REQUIRE(run(with({"segment", f / "one.off", "-o", one}), log));
+  REQUIRE(run(with({"segment", f / "alone/h2.off", "-o", one}), log));
   REQUIRE(run({"analyze", one, "--prior", city}, log));
   // The same house stands in the city: its segments lie where they lie there.
-  const Building alone = Store(one, false).building("one");
+  const Building alone = Store(one, false).building("h2");
   const Building there = Store(city, false).building("h2");
   CHECK(alone.layer_of_segment == there.layer_of_segment);
   REQUIRE(run({"mesh", one}, log));
   REQUIRE(run({"export", one, "-o", f / "stages", "--quiet"}, log));
-  CHECK(slurp(f.path / "out" / "buildings" / "one.glb") ==
-        slurp(f.path / "stages" / "buildings" / "one.glb"));
+  CHECK(slurp(f.path / "out" / "buildings" / "h2.glb") ==
+        slurp(f.path / "stages" / "buildings" / "h2.glb"));
   CHECK(slurp(f.path / "stages" / "report.json").find("\"prior\": true") != std::string::npos);
 }
 
