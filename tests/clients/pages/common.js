@@ -23,3 +23,13 @@ export async function settle(settled) {
     if (performance.now() > end) throw new Error('not settled in time');
   }
 }
+
+/** The first answer of `ask(x, y)`, both −0.8 … 0.8 of the view, over a lattice of places to click. */
+export function firstOf(ask) {
+  for (let y = -0.8; y < 0.9; y += 0.2)
+    for (let x = -0.8; x < 0.9; x += 0.2) {
+      const answer = ask(x, y);
+      if (answer) return answer;
+    }
+  return null;
+}
