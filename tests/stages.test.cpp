@@ -80,6 +80,11 @@ Mesh house(int i) {
                     test::box_mesh({2, 3, 7}, {3, 4.2, 11}));
 }
 
+/// Two kinds of part, so that the layers beyond the first have something to tell apart.
+Mesh house_with_porch(int i) {
+  return test::join(house(i), test::box_mesh({3, -3, 0}, {7, 0.2, 3}));
+}
+
 int segmented(const std::string& scene) {
   if (!fs::exists(scene)) return 0;
   try {
@@ -153,11 +158,11 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   Folder f;
   fs::create_directories(f / "city");
   for (int i = 0; i < 4; ++i)
-    write_off(f.path / "city" / ("h" + std::to_string(i) + ".off"), house(i));
+    write_off(f.path / "city" / ("h" + std::to_string(i) + ".off"), house_with_porch(i));
   fs::create_directories(f / "alone");
-  write_off(f.path / "alone" / "h2.off", house(2));
+  write_off(f.path / "alone" / "h2.off", house_with_porch(2));
   const std::string log = f / "log", city = f / "city.colod", one = f / "one.colod";
-  const std::vector<std::string> small{"--ns", "16", "--nr", "24", "--quiet"};
+  const std::vector<std::string> small{"--ns", "32", "--nr", "40", "--quiet"};
   const auto with = [&](std::vector<std::string> a) {
     a.insert(a.end(), small.begin(), small.end());
     return a;
@@ -168,7 +173,8 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   REQUIRE(run({"analyze", city}, log));
   REQUIRE(run(with({"build", f / "alone/h2.off", "-o", f / "out", "--prior", city}), log));
   CHECK(slurp(f.path / "out" / "report.json").find("\"prior\": true") != std::string::npos);
-  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city, "--layers", "4"}), log));
+  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city, "--layers", "4"}),
+             log));
 
   REQUIRE(run(with({"segment", f / "alone/h2.off", "-o", one}), log));
   REQUIRE(run({"analyze", one, "--prior", city}, log));
@@ -176,6 +182,7 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   const Building alone = Store(one, false).building("h2");
   const Building there = Store(city, false).building("h2");
   CHECK(alone.layer_of_segment == there.layer_of_segment);
+  CHECK(alone.layer_of_segment.back() > 0);
   REQUIRE(run({"mesh", one}, log));
   REQUIRE(run({"export", one, "-o", f / "stages", "--quiet"}, log));
   CHECK(slurp(f.path / "out" / "buildings" / "h2.glb") ==
