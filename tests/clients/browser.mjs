@@ -17,6 +17,10 @@ export async function serve() {
   const log = [];
   const server = http.createServer((request, response) => {
     const url = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
+    if (url === '/favicon.ico') {  // browsers ask by themselves
+      response.writeHead(204).end();
+      return;
+    }
     const [, mount, ...rest] = url.split('/');
     const base = mounts[mount], file = base && path.join(base, ...rest);
     if (!file || !file.startsWith(base) || !fs.existsSync(file) || !fs.statSync(file).isFile()) {
@@ -54,7 +58,7 @@ export async function open(browser, url) {
   const errors = [];
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => {
-    if (message.type() === 'error' && !message.text().includes('favicon')) errors.push(message.text());
+    if (message.type() === 'error') errors.push(message.text());
   });
   page.on('requestfailed', (request) => errors.push(`failed: ${request.url()}`));
   page.setDefaultTimeout(180000);  // a software renderer on a busy machine
