@@ -130,7 +130,7 @@ void Packet<1>::intersect(const int*, RTCScene scene, RTCIntersectContext* conte
 template <int kWidth>
 class Caster {
  public:
-  Caster(const Job& job, const Scene& scene, HitGrid& grid)
+  Caster(const Job& job, const Scene& scene, const HitGrid& grid)
       : job_(job), scene_(scene), order_(order_of_directions(grid.nr)), grid_(grid) {
     for (int k = 0; k < grid.nr; ++k) directions_.push_back(direction(k, grid.nr));
   }
@@ -138,7 +138,7 @@ class Caster {
   static int bands_per_slice(int ns) { return (ns + kTileY - 1) / kTileY; }
 
   /// Casts band b; writes is_valid and the number of hits (at first[v + 1]) of its voxels.
-  Piece cast(std::size_t b) const {
+  Piece cast(std::size_t b, HitGrid& out) const {
     const FlushDenormals flush;
     Work work;
     work.seen.resize(static_cast<std::size_t>(grid_.nr) * kWidth);
@@ -151,16 +151,27 @@ class Caster {
     for (int x0 = 0; x0 < ns; x0 += kTileX) {
       place(work, x0, y0, z);
       band.rays += cast_tile(work);
-      store(work, first_voxel);
+      store(work, first_voxel, out);
     }
     // From the order of the tiles to the order of the voxels.
     band.hits.reserve(work.hits.size());
     for (std::size_t i = 0; i < work.begin.size(); ++i) {
       const auto from = work.hits.begin() + static_cast<std::ptrdiff_t>(work.begin[i]);
       band.hits.insert(band.hits.end(), from,
-                       from + static_cast<std::ptrdiff_t>(grid_.first[first_voxel + i + 1]));
+                       from + static_cast<std::ptrdiff_t>(out.first[first_voxel + i + 1]));
     }
     return band;
+  }
+
+  /// Direction k from the voxel's tile: 2 × plane + (inner side), −1 nothing.
+  int look(std::size_t v, int k) const {
+    const FlushDenormals flush;
+    Work work;
+    const auto n = static_cast<std::size_t>(grid_.ns);
+    const int x = static_cast<int>(v % n), y = static_cast<int>(v / n % n);
+    place(work, x / kTileX * kTileX, y / kTileY * kTileY, static_cast<int>(v / n / n));
+    intersect(work, k);
+    return seen(work, x % kTileX + y % kTileY * kTileX, k);
   }
 
  private:
@@ -198,23 +209,10 @@ class Caster {
 
   /// All directions of a tile, or as many as matter. Returns the number of rays.
   std::uint64_t cast_tile(Work& work) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     std::uint64_t rays = 0;
     int left = grid_.nr;
     for (const int k : order_) {
-      const Direction& d = directions_[k];
-      for (int lane = 0; lane < kWidth; ++lane) {
-        work.rays.ray.dir_x[lane] = static_cast<float>(d.x);
-        work.rays.ray.dir_y[lane] = static_cast<float>(d.y);
-        work.rays.ray.dir_z[lane] = 0;
-        work.rays.ray.tnear[lane] = 0;
-        work.rays.ray.tfar[lane] = std::numeric_limits<float>::infinity();
-        work.rays.ray.mask[lane] = ~0u;
-        work.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-      }
-      Packet<kWidth>::intersect(work.active, scene_.get(), &context, &work.rays);
+      intersect(work, k);
       --left;
       const int cast = count(work, k, left);
       rays += static_cast<std::uint64_t>(cast);
@@ -223,20 +221,39 @@ class Caster {
     return rays;
   }
 
+  /// The active lanes' first hits in direction k.
+  void intersect(Work& work, int k) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    const Direction& d = directions_[k];
+    for (int lane = 0; lane < kWidth; ++lane) {
+      work.rays.ray.dir_x[lane] = static_cast<float>(d.x);
+      work.rays.ray.dir_y[lane] = static_cast<float>(d.y);
+      work.rays.ray.dir_z[lane] = 0;
+      work.rays.ray.tnear[lane] = 0;
+      work.rays.ray.tfar[lane] = std::numeric_limits<float>::infinity();
+      work.rays.ray.mask[lane] = ~0u;
+      work.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    Packet<kWidth>::intersect(work.active, scene_.get(), &context, &work.rays);
+  }
+
+  /// What a lane met in direction k: 2 × plane + (inner side), −1 nothing.
+  int seen(const Work& work, int lane, int k) const {
+    if (work.rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return -1;
+    const int plane = job_.soup.plane_of_triangle[work.rays.hit.primID[lane]];
+    return 2 * plane + directions_[k].is_inside(job_.normal[plane]);
+  }
+
   /// Takes in what direction k met, retires lanes without hope. Returns the lanes cast.
   int count(Work& work, int k, int left) const {
     int cast = 0;
     for (int lane = 0; lane < kWidth; ++lane) {
       if (!work.active[lane]) continue;
       ++cast;
-      int& seen = work.seen[static_cast<std::size_t>(k) * kWidth + lane];
-      seen = -1;
-      if (work.rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) {
-        const int plane = job_.soup.plane_of_triangle[work.rays.hit.primID[lane]];
-        const bool is_inside = directions_[k].is_inside(job_.normal[plane]);
-        seen = 2 * plane + is_inside;
-        ++(is_inside ? work.in : work.out)[lane];
-      }
+      const int met = work.seen[static_cast<std::size_t>(k) * kWidth + lane] = seen(work, lane, k);
+      if (met >= 0) ++(met & 1 ? work.in : work.out)[lane];
       if (job_.is_stopping && job_.rule.is_hopeless(work.in[lane], work.out[lane], left))
         work.active[lane] = 0;
     }
@@ -244,17 +261,17 @@ class Caster {
   }
 
   /// Writes what the tile's voxels are, and the hits of the kept ones.
-  void store(Work& work, std::size_t first_voxel) const {
+  void store(Work& work, std::size_t first_voxel, HitGrid& grid) const {
     for (int lane = 0; lane < kWidth; ++lane) {
       if (work.voxel[lane] < 0) continue;
       const auto v = static_cast<std::size_t>(work.voxel[lane]);
       const int in = work.in[lane], out = work.out[lane];
       // A retired lane has counts that can no longer be kept, so this asks the same of both.
       const bool is_kept = work.active[lane] && job_.rule.is_kept(in, out);
-      grid_.is_valid[v] = is_kept && job_.rule.is_valid(in, out);
+      grid.is_valid[v] = is_kept && job_.rule.is_valid(in, out);
       work.begin[v - first_voxel] = work.hits.size();
       if (is_kept) append_hits(work, lane);
-      grid_.first[v + 1] = work.hits.size() - work.begin[v - first_voxel];
+      grid.first[v + 1] = work.hits.size() - work.begin[v - first_voxel];
     }
   }
 
@@ -282,25 +299,48 @@ class Caster {
   const Scene& scene_;
   std::vector<Direction> directions_;
   std::vector<int> order_;
-  HitGrid& grid_;
+  const HitGrid& grid_;
 };
+
+/// Packets of 16 run as such, not as two of 8.
+bool is_wide_native() {
+  return rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+}
 
 template <int kWidth>
 void cast_all(const Job& job, const Scene& scene, HitGrid& grid) {
   const Caster<kWidth> caster(job, scene, grid);
   std::vector<Piece> bands(static_cast<std::size_t>(grid.ns) *
                            Caster<kWidth>::bands_per_slice(grid.ns));
-  parallel_for(bands.size(), [&](std::size_t b) { bands[b] = caster.cast(b); });
+  parallel_for(bands.size(), [&](std::size_t b) { bands[b] = caster.cast(b, grid); });
   join_pieces(bands, grid);
 }
 
 }  // namespace
 
+struct Reference::Impl {
+  Scene scene;
+  Caster<16> wide;
+  Caster<8> narrow;
+  bool is_wide = is_wide_native();
+
+  Impl(const Job& job, const HitGrid& grid)
+      : scene(job.soup.corners), wide(job, scene, grid), narrow(job, scene, grid) {}
+};
+
+Reference::Reference(const Job& job, const HitGrid& grid)
+    : impl_(std::make_unique<Impl>(job, grid)) {}
+Reference::~Reference() = default;
+
+int Reference::look(std::size_t voxel, int k) const {
+  return impl_->is_wide ? impl_->wide.look(voxel, k) : impl_->narrow.look(voxel, k);
+}
+
 void cast_embree(const Job& job, bool is_single, HitGrid& grid) {
   const Scene scene(job.soup.corners);
   if (is_single)
     cast_all<1>(job, scene, grid);
-  else if (rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
+  else if (is_wide_native())
     cast_all<16>(job, scene, grid);
   else
     cast_all<8>(job, scene, grid);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "visibility.h"
@@ -69,6 +70,20 @@ struct Piece {
 /// Ends a grid of which `first[v + 1]` holds the number of hits of voxel v: `pieces` in the order
 /// of the voxels become its hits.
 void join_pieces(std::vector<Piece>& pieces, HitGrid& grid);
+
+/// What cast_embree sees along single rays, to the bit where its packet is whole. Safe from several
+/// threads.
+class Reference {
+ public:
+  Reference(const Job& job, const HitGrid& grid);
+  ~Reference();
+  /// 2 × plane + (inner side) of the first hit from a voxel's centre in direction k; −1 nothing.
+  int look(std::size_t voxel, int k) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Both fill is_valid, first, hits and rays of a grid of which the rest is set and those are zero.
 void cast_embree(const Job& job, bool is_single, HitGrid& grid);
