@@ -6,8 +6,8 @@
 //   once. Rays of one direction are taken in the order of their offset across it, which is the same
 //   in every slice; a segment then meets one run of them, and a block of neighbouring rays only a
 //   handful of segments. Opposite directions share all of this. No ray is given up early. Where a
-//   ray grazes a segment's end or a crossing, rounding decides, and Embree is asked (some 1 in 5,000
-//   rays), so that both engines see the same.
+//   ray grazes a segment's end or a crossing, rounding decides, and Embree is asked, so that
+//   both engines see the same.
 // Notation: d direction; across, along: a point's coordinates on d turned left and on d; D distance
 //   from a voxel to a segment along d, negative behind the voxel; a code is 2 × plane of the slice
 //   + (seen from inside), planes counted from 1, 0 nothing.
