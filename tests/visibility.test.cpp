@@ -87,19 +87,6 @@ Truth brute_voxel(const Planes& planes, const HitGrid& g, std::size_t v) {
   return t;
 }
 
-std::vector<Plane> random_planes(int count, std::uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  const auto uniform = [&](double r) {
-    return r * (2 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1);
-  };
-  std::vector<Plane> list;
-  for (int i = 0; i < count; ++i)
-    list.push_back(rectangle_plane({uniform(5), uniform(5), uniform(5)},
-                                   {uniform(4), uniform(4), uniform(4)},
-                                   {uniform(4), uniform(4), uniform(4)}));
-  return list;
-}
-
 }  // namespace
 
 TEST_CASE("in a closed box every voxel is valid and every ray meets an inner side") {

@@ -1,6 +1,7 @@
 // Planes made by hand: what rooms 3 and 4 are tested on.
 #pragma once
 
+#include <random>
 #include <vector>
 
 #include "../src/planes.h"
@@ -61,6 +62,20 @@ inline Planes as_planes(std::vector<Plane> list) {
     planes.box.extend(bounding_box(p.outline.vertices));
   }
   return planes;
+}
+
+/// `count` parallelograms about the origin, some 10 m across.
+inline std::vector<Plane> random_planes(int count, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  const auto uniform = [&](double r) {
+    return r * (2 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1);
+  };
+  std::vector<Plane> list;
+  for (int i = 0; i < count; ++i)
+    list.push_back(rectangle_plane({uniform(5), uniform(5), uniform(5)},
+                                   {uniform(4), uniform(4), uniform(4)},
+                                   {uniform(4), uniform(4), uniform(4)}));
+  return list;
 }
 
 /// b's planes after a's.

@@ -47,19 +47,6 @@ std::uint64_t differing(const HitGrid& a, const HitGrid& b) {
   return sum;
 }
 
-Planes random_planes(int count, std::uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  const auto uniform = [&](double r) {
-    return r * (2 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1);
-  };
-  std::vector<Plane> list;
-  for (int i = 0; i < count; ++i)
-    list.push_back(rectangle_plane({uniform(5), uniform(5), uniform(5)},
-                                   {uniform(4), uniform(4), uniform(4)},
-                                   {uniform(4), uniform(4), uniform(4)}));
-  return as_planes(list);
-}
-
 /// The first plane of a ray and its side as 2 × plane + inside, in doubles over the very triangles;
 /// −1 nothing.
 int brute_first(const casting::Job& job, const Vec3& o, const casting::Direction& d) {
@@ -121,14 +108,14 @@ TEST_CASE("the sweep sees what Embree sees: boxes, odd directions, one voxel, on
 
 TEST_CASE("the sweep agrees with brute force to the last ray on random planes") {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Planes planes = random_planes(70, seed);
+    const Planes planes = as_planes(random_planes(70, seed));
     CHECK(wrong_rays(planes, cast(planes, 11, 30), 3) == 0);
     CHECK(differing(cast(planes, 20, 24), cast(planes, 20, 24, Visibility::kEmbree)) <= 1);
   }
 }
 
 TEST_CASE("a ray at a time finds what packets find") {
-  const Planes planes = random_planes(60, 8);
+  const Planes planes = as_planes(random_planes(60, 8));
   const HitGrid one = cast(planes, 13, 20, Visibility::kEmbreeSingle);
   CHECK(differing(one, cast(planes, 13, 20, Visibility::kEmbree)) <= 1);
 }
@@ -173,7 +160,7 @@ TEST_CASE("levels in a slice, slices without outlines, walls along the rays, a s
 }
 
 TEST_CASE("reversed planes and planes left out are the same to the sweep") {
-  const Planes planes = random_planes(40, 5);
+  const Planes planes = as_planes(random_planes(40, 5));
   std::vector<char> is_active(40, 1), is_reversed(40, 0);
   for (int i = 0; i < 40; i += 3) is_active[i] = 0, is_reversed[i + 1 < 40 ? i + 1 : 0] = 1;
   VisibilityOptions o{.engine = Visibility::kSweep, .ns = 12, .nr = 30};
@@ -186,7 +173,7 @@ TEST_CASE("reversed planes and planes left out are the same to the sweep") {
 }
 
 TEST_CASE("the sweep gives the same bytes with one and two threads, and in several bands") {
-  const Planes planes = random_planes(50, 4);
+  const Planes planes = as_planes(random_planes(50, 4));
   limit_threads(1);
   const HitGrid one = cast(planes, 40, 900);  // more codes than a task may hold
   limit_threads(2);
