@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <numbers>
-#include <random>
 
 #include "../src/error.h"
 #include "../src/parallel.h"

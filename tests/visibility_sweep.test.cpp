@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <random>
 
 #include "../src/frame.h"
 #include "../src/mesh_io.h"
