@@ -140,6 +140,13 @@ Counts count(const Building& b) {
           bounding_box(points).diagonal()};
 }
 
+void drop_geometry(Building& b) {
+  b.source.mesh = {};
+  b.source.cloud = {};
+  b.source.face_object = std::vector<int>();
+  b.planes = {};
+}
+
 Building segment_building(Turn turn, const Options& options) {
   Building b;
   Source& source = turn.source;

@@ -72,6 +72,9 @@ struct Scene {
 
 Counts count(const Building& building);
 
+/// Lets go of source and planes, by far the most of a building's memory; counts and the rest stay.
+void drop_geometry(Building& building);
+
 /// Where source and planes of the buildings lie while the scene is analysed. This one leaves them
 /// in memory; store.h has one that does not, so that memory does not grow with the scene. Called
 /// from several threads.

@@ -696,13 +696,7 @@ void TemporaryStore::get(Building& b) {
   b.planes = std::move(kept.planes);
 }
 
-void TemporaryStore::drop(Building& b) {
-  b.source.mesh = {};
-  b.source.cloud = {};
-  b.source.face_object.clear();
-  b.source.face_object.shrink_to_fit();
-  b.planes = {};
-}
+void TemporaryStore::drop(Building& b) { drop_geometry(b); }
 
 std::string segments_key(const Source& source, const Options& options) {
   Hash hash;

@@ -67,12 +67,14 @@ int segment(const StageArguments& a) {
   return exit_code(problems);
 }
 
-/// All buildings of several scene files; `file_of[i]` tells where building i came from.
+/// All buildings of several scene files without their geometry, so that memory does not follow the
+/// sources; `file_of[i]` tells where building i came from.
 Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of) {
   Scene scene;
   for (std::size_t f = 0; f < stores.size(); ++f)
     for (const std::string& name : stores[f].names()) {
       scene.buildings.push_back(stores[f].building(name));
+      drop_geometry(scene.buildings.back());
       file_of.push_back(f);
     }
   if (scene.buildings.empty())
@@ -148,7 +150,10 @@ int mesh(const StageArguments& a) {
       store.put_meshes(b);
       log.progress(names[i], "layers", ++done, static_cast<int>(names.size()));
     });
-    for (const std::string& name : names) problems.buildings.push_back(store.building(name));
+    for (const std::string& name : names) {
+      problems.buildings.push_back(store.building(name));
+      drop_geometry(problems.buildings.back());
+    }
   }
   report_problems(problems, log);
   return exit_code(problems);
