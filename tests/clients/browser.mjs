@@ -60,7 +60,10 @@ export async function open(browser, url) {
   page.on('console', (message) => {
     if (message.type() === 'error') errors.push(message.text());
   });
-  page.on('requestfailed', (request) => errors.push(`failed: ${request.url()}`));
+  page.on('requestfailed', (request) => {  // requests that a page gives up, having read them or not, are its own affair
+    const reason = request.failure()?.errorText;
+    if (reason !== 'net::ERR_ABORTED') errors.push(`${reason}: ${request.url()}`);
+  });
   page.setDefaultTimeout(180000);  // a software renderer on a busy machine
   await page.goto(url, { waitUntil: 'load' });
   await page.waitForFunction(() => window.client);

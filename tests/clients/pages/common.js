@@ -14,13 +14,19 @@ export function drawnPixels(canvas) {
   return count;
 }
 
-/** Resolves when `settled()` held for ten frames on end; rejects after three minutes. */
+/**
+ * Resolves when `settled()` held for ten frames and half a second on end: CesiumJS waits 0.2 s after a camera's move before it asks
+ * for tiles at the view's edge. Rejects after three minutes.
+ */
 export async function settle(settled) {
-  const end = performance.now() + 180000;
-  for (let calm = 0; calm < 10;) {
+  const begin = performance.now();
+  for (let frames = 0, since = begin; frames < 10 || performance.now() < since + 500; ++frames) {
     await new Promise((done) => requestAnimationFrame(done));
-    calm = settled() ? calm + 1 : 0;
-    if (performance.now() > end) throw new Error('not settled in time');
+    if (!settled()) {
+      frames = 0;
+      since = performance.now();
+    }
+    if (performance.now() > begin + 180000) throw new Error('not settled in time');
   }
 }
 
