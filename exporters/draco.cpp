@@ -7,6 +7,7 @@
 #include <draco/compression/expert_encode.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "../src/error.h"
@@ -16,6 +17,12 @@ namespace colod {
 namespace {
 
 constexpr int kNormalBits = 10;       // octahedral: at most about 0.1 degrees off
+
+/// Which of Draco's predictions packs a small faceted mesh best differs from mesh to mesh: the
+/// shortest of three is taken. All 55 pairs of speeds together save 0.2 % more.
+constexpr std::array kSpeeds{0, 2, 4};
+constexpr int kDecodingSpeed = 0;
+
 constexpr int kMaxIntegerId = 65535;  // beyond it glTF wants floats, exact to 2^24
 
 [[noreturn]] void refuse(const std::string& cause) { throw Error(Stage::kOutput, "draco", cause); }
@@ -84,6 +91,19 @@ std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGr
   return out;
 }
 
+std::string encode_at(const draco::Mesh& mesh, const Attributes& ids, const QuantizationGrid& grid,
+                      int speed) {
+  draco::ExpertEncoder encoder(mesh);
+  encoder.SetSpeedOptions(speed, kDecodingSpeed);
+  const Eigen::Vector3f origin = grid.origin.cast<float>();
+  encoder.SetAttributeExplicitQuantization(ids.position, grid.bits, 3, origin.data(),
+                                           static_cast<float>(grid.range));
+  encoder.SetAttributeQuantization(ids.normal, kNormalBits);
+  draco::EncoderBuffer buffer;
+  check(encoder.EncodeToBuffer(&buffer));
+  return {buffer.data(), buffer.size()};
+}
+
 /// What a client will see.
 void read_back(DracoResult& result) {
   draco::DecoderBuffer buffer;
@@ -135,16 +155,11 @@ DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid) {
   if (mesh.triangles.empty()) refuse("a mesh without triangles");
   Attributes ids;
   const std::unique_ptr<draco::Mesh> input = as_draco(mesh, grid, ids);
-  draco::ExpertEncoder encoder(*input);
-  encoder.SetSpeedOptions(3, 5);
-  const Eigen::Vector3f origin = grid.origin.cast<float>();
-  encoder.SetAttributeExplicitQuantization(ids.position, grid.bits, 3, origin.data(),
-                                           static_cast<float>(grid.range));
-  encoder.SetAttributeQuantization(ids.normal, kNormalBits);
-  draco::EncoderBuffer buffer;
-  check(encoder.EncodeToBuffer(&buffer));
   DracoResult result;
-  result.bytes.assign(buffer.data(), buffer.size());
+  for (const int speed : kSpeeds) {
+    const std::string bytes = encode_at(*input, ids, grid, speed);
+    if (result.bytes.empty() || bytes.size() < result.bytes.size()) result.bytes = bytes;
+  }
   read_back(result);
   if (result.faces != mesh.triangles.size()) refuse("the encoder lost faces");
   return result;
