@@ -66,7 +66,6 @@ export async function open(browser, url) {
   });
   page.setDefaultTimeout(180000);  // a software renderer on a busy machine
   await page.goto(url, { waitUntil: 'load' });
-  await page.waitForFunction(() => window.client);
   return { page, errors };
 }
 

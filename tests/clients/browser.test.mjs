@@ -3,12 +3,18 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { launch, open, screenshot, serve } from './browser.mjs';
+import { launch, open as openPage, screenshot, serve } from './browser.mjs';
 import { files, finestContents, readGlb, root, trianglesOf } from './outputs.mjs';
 
 let server, browser;
 before(async () => { server = await serve(); browser = await launch(); });
 after(async () => { await browser?.close(); server?.close(); });
+
+async function open(url) {
+  const opened = await openPage(browser, `${server.address}/pages/${url}`);
+  await opened.page.waitForFunction(() => window.client);
+  return opened;
+}
 
 const stops = [['far', 8000], ['middle', 500], ['near', 60]];
 
@@ -20,7 +26,7 @@ async function flyIn(client, folder, name) {
   const triangles = finest.reduce((sum, file) => sum + trianglesOf(file), 0);
   const bytes = finest.reduce((sum, file) => sum + fs.statSync(file).size, 0);
   const started = server.log.length;
-  const { page, errors } = await open(browser, `${server.address}/pages/${client}.html?tileset=/out/${folder}/tileset.json`);
+  const { page, errors } = await open(`${client}.html?tileset=/out/${folder}/tileset.json`);
   const seen = [];
   for (const [stop, range] of stops) {
     const counters = await page.evaluate((metres) => window.client.stop(metres), range);
@@ -53,7 +59,7 @@ test('3DTilesRendererJS flies in from far to near, and picks a building', async 
 });
 
 test('3DTilesRendererJS reads meshopt', async () => {
-  const { page, errors } = await open(browser, `${server.address}/pages/tiles-renderer.html?tileset=/out/meshopt/tileset.json`);
+  const { page, errors } = await open('tiles-renderer.html?tileset=/out/meshopt/tileset.json');
   const near = await page.evaluate(() => window.client.stop(150));
   await screenshot(page, 'tiles-renderer-meshopt');
   assert.ok(near.pixels > 1000 && near.triangles > 0);
@@ -63,7 +69,7 @@ test('3DTilesRendererJS reads meshopt', async () => {
 });
 
 test('three.js shows the finest level, once', async () => {
-  const { page, errors } = await open(browser, `${server.address}/pages/three.html`);
+  const { page, errors } = await open('three.html');
   const glbs = files(path.join(root, 'local', 'buildings'), '.glb').slice(0, 3).map((file) => ['local/buildings', file]);
   glbs.push(['meshopt/buildings', files(path.join(root, 'meshopt', 'buildings'), '.glb')[0]]);
   glbs.push(['engine/engine', files(path.join(root, 'engine', 'engine'), '_LOD0.glb')[0]]);
@@ -82,7 +88,7 @@ test('three.js shows the finest level, once', async () => {
 });
 
 test('Babylon.js loads a building progressively, coarsest first', async () => {
-  const { page, errors } = await open(browser, `${server.address}/pages/babylon.html`);
+  const { page, errors } = await open('babylon.html');
   const file = files(path.join(root, 'local', 'buildings'), '.glb')[0];
   const started = server.log.length;
   const shown = await page.evaluate((url) => window.client.show(url), `/out/local/buildings/${path.basename(file)}`);

@@ -1,0 +1,210 @@
+// The page of `colod view`: streams /out/tileset.json; the settings and counters are the elements of index.html.
+import { BufferAttribute, CircleGeometry, Color, DirectionalLight, HemisphereLight, Mesh, MeshBasicMaterial, PerspectiveCamera,
+  Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { dress, layerColour, meshesOf, paint, showEdges, undress } from './paint.js';
+import { idsOf, openTileset } from './tileset.js';
+
+const $ = (id) => document.getElementById(id);
+const canvas = $('scene'), settings = $('settings');
+const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+const camera = new PerspectiveCamera(50, 1, 0.1, 1e5);
+const controls = new OrbitControls(camera, canvas);
+controls.maxPolarAngle = 0.495 * Math.PI;  // not below the ground
+controls.zoomToCursor = true;
+controls.screenSpacePanning = false;
+
+const scene = new Scene();
+const sun = new DirectionalLight('#fff4e0', 2);
+sun.position.set(-0.5, 1, 0.75);
+scene.add(new HemisphereLight('#eaf3ff', '#8f8a80', 1.7), sun);
+
+let radius = 100, errorScale = 0, selected = null, pressed = null;
+let bytes = 0, frames = 0, since = performance.now(), calm = 0;  // counters; calm: frames with nothing to load
+
+const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) => {
+  radius = 0.5 * box.getSize(new Vector3()).length();
+  controls.maxDistance = 60 * radius;
+  scene.add(ground(3 * radius));
+  errorScale = extras.errorScale ?? 0;
+  setError(extras.targetSse ?? 16);
+  $('place').textContent = extras.crs ?? 'local, no place on Earth';
+  home();
+});
+scene.add(tiles.group);
+tiles.addEventListener('load-model', (tile) => { dress(tile.scene); paint(tile.scene, settings.colour.value, selected); });
+tiles.addEventListener('dispose-model', (tile) => undress(tile.scene));
+tiles.addEventListener('load-error', ({ url, error }) => {
+  setState('failed');
+  $('state').textContent = `${url}: ${error.message}`;
+});
+
+/** A disc that fades into the background. */
+function ground(size) {
+  const disc = new CircleGeometry(size, 64).rotateX(-Math.PI / 2).translate(0, -0.02, 0);
+  const { r, g, b } = new Color('#d5d6cf');
+  const rgba = new Float32Array(4 * disc.getAttribute('position').count);
+  for (let i = 0; i < rgba.length; i += 4) rgba.set([r, g, b, i === 0 ? 1 : 0], i);
+  disc.setAttribute('color', new BufferAttribute(rgba, 4));
+  const material = new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
+  return Object.assign(new Mesh(disc, material), { renderOrder: -1 });
+}
+
+function home() {
+  controls.target.set(0, 0, 0);
+  camera.position.set(-0.55, 0.75, 1).setLength(2.1 * radius);
+}
+
+/** The slider is logarithmic: 1 … 256 pixels. */
+function setError(pixels) {
+  $('error').value = Math.log2(pixels);
+  readError();
+}
+
+function readError() {
+  tiles.errorTarget = 2 ** $('error').value;
+  $('error-text').textContent = `${short(tiles.errorTarget)} px`;
+  $('meaning').textContent = errorScale > 0 ? `shapes are at most ${short(tiles.errorTarget / errorScale)} px wrong` : '';
+  setState('loading');
+}
+
+const short = (number) => number.toLocaleString('en', { maximumSignificantDigits: 2 });
+
+function repaint() {
+  tiles.forEachLoadedModel((model) => paint(model, settings.colour.value, selected));
+  showLayers();
+}
+
+/** What stands under a pointer: a hit of the raycaster, or nothing. */
+function under(event) {
+  const { width, height } = canvas.getBoundingClientRect();
+  const ray = new Raycaster();
+  ray.firstHitOnly = true;
+  ray.setFromCamera(new Vector2(2 * event.offsetX / width - 1, 1 - 2 * event.offsetY / height), camera);
+  return ray.intersectObject(tiles.group, true)[0];
+}
+
+function select(name) {
+  selected = name;
+  repaint();
+  showBuilding();
+}
+
+const visibleMeshes = () => [...tiles.visibleTiles].flatMap((tile) => tile.engineData.scene ? meshesOf(tile.engineData.scene) : []);
+const visibleRows = () => visibleMeshes().flatMap((mesh) => mesh.userData.rows ?? []);
+
+const words = {
+  layer: (layer) => (layer < 0 ? 'stand-in' : layer === 0 ? '0 (coarsest)' : String(layer)),
+  error: (metres) => `${metres.toFixed(3)} m`,
+  faces: (count) => count.toLocaleString('en'),
+};
+
+/** The metadata of the selected building on the level that is shown now. */
+function showBuilding() {
+  $('building').hidden = selected === null;
+  const row = visibleRows().find(({ name }) => name === selected);
+  if (!row) return;
+  $('building').querySelector('h1').textContent = row.name;
+  $('building').querySelector('table').replaceChildren(...Object.entries(row).filter(([key]) => key !== 'name').map(([key, value]) => {
+    const line = document.createElement('tr');
+    line.append(document.createElement('th'), document.createElement('td'));
+    line.firstChild.textContent = key;
+    line.lastChild.textContent = words[key]?.(value) ?? value;
+    return line;
+  }));
+}
+
+/** The legend: what is shown, coarsest first. */
+function showLayers() {
+  const counts = new Map();
+  if (settings.colour.value === 'layer')
+    for (const { layer } of visibleRows()) counts.set(layer, (counts.get(layer) ?? 0) + 1);
+  $('layers').replaceChildren(...[...counts].sort((a, b) => a[0] - b[0]).map(([layer, count]) => {
+    const item = document.createElement('li'), swatch = document.createElement('i'), number = document.createElement('data');
+    swatch.style.background = layerColour(layer);
+    number.value = number.textContent = count;
+    item.append(swatch, layer < 0 ? 'stand-ins' : `layer ${words.layer(layer)}`, number);
+    return item;
+  }));
+}
+
+new PerformanceObserver((list) => {
+  for (const entry of list.getEntries()) if (entry.name.includes('/out/')) bytes += entry.encodedBodySize;
+}).observe({ type: 'resource', buffered: true });
+
+function count(id, value, text = value.toLocaleString('en')) {
+  $(id).value = value;
+  $(id).textContent = text;
+}
+
+function countEverything() {
+  const now = performance.now();
+  count('frames', Math.round(1000 * frames / (now - since)));
+  count('tiles', tiles.visibleTiles.size);
+  count('triangles', visibleMeshes().reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0));
+  count('bytes', bytes, Math.round(bytes / 1000).toLocaleString('en'));
+  frames = 0;
+  since = now;
+  showLayers();
+  showBuilding();
+}
+
+function setState(state) {
+  if (state === 'loading') calm = 0;
+  if (state === document.body.dataset.state) return;
+  document.body.dataset.state = state;
+  if (state !== 'failed') $('state').textContent = state === 'loading' ? 'loading …' : '';
+}
+
+/** `ready` when nothing was left to load for ten frames. */
+function watch() {
+  if (document.body.dataset.state === 'failed') return;
+  if (!tiles.root || tiles.isLoading) setState('loading');
+  else if (++calm === 10) {
+    countEverything();
+    setState('ready');
+  }
+}
+
+function frame() {
+  controls.update();
+  const distance = camera.position.distanceTo(controls.target);
+  camera.near = Math.max(0.05, distance / 200);
+  camera.far = distance + 8 * radius;
+  camera.updateProjectionMatrix();
+  camera.updateMatrixWorld();
+  tiles.update();
+  renderer.render(scene, camera);
+  ++frames;
+  watch();
+  if (performance.now() > since + 500) countEverything();
+}
+
+new ResizeObserver(() => {
+  renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  renderer.setSize(innerWidth, innerHeight, false);
+  camera.aspect = innerWidth / innerHeight;
+  tiles.setResolutionFromRenderer(camera, renderer);
+}).observe(canvas);
+
+canvas.addEventListener('pointerdown', (event) => { pressed = event; });
+canvas.addEventListener('pointerup', (event) => {
+  const isClick = pressed && event.button === 0 && Math.hypot(event.x - pressed.x, event.y - pressed.y) < 5;
+  if (!isClick) return;
+  const hit = under(event);
+  select(hit?.object.userData.rows[idsOf(hit.object)?.getX(hit.face.a)]?.name ?? null);
+});
+canvas.addEventListener('dblclick', (event) => {
+  const hit = under(event);
+  if (!hit) return;
+  camera.position.lerp(hit.point, 0.6);
+  controls.target.copy(hit.point);
+});
+addEventListener('keydown', ({ key }) => { if (key === 'Escape') select(null); });
+settings.addEventListener('submit', (event) => event.preventDefault());
+for (const choice of settings.colour) choice.addEventListener('input', repaint);
+$('edges').addEventListener('input', () => showEdges($('edges').checked));
+$('error').addEventListener('input', readError);
+$('home').addEventListener('click', home);
+$('close').addEventListener('click', () => select(null));
+renderer.setAnimationLoop(frame);
