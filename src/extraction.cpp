@@ -4,9 +4,10 @@
 // from inside. Robust rules add candidate planes, a min-cut and several trials before giving up
 // (extraction_candidates.cpp, extraction_labels.cpp), and cut anew without the planes that carry
 // only slivers or uncovered facets (on 15 clean models a quarter of the polygons and two thirds of
-// the facets under 5 cm; measured in November 2026). Both mend the boundary to a 2-manifold
-// (extraction_repair.cpp) and write it in the same way (extraction_surface.cpp).
-// Notation: a cell is a convex piece of space between the layer's planes.
+// the facets under 5 cm; measured in November 2026), cut planes near a larger one along that one
+// (extraction_leaders.cpp) and drop facets that hardly matter (extraction_simplify.cpp). Both mend
+// the boundary to a 2-manifold (extraction_repair.cpp) and write it in the same way
+// (extraction_surface.cpp). Notation: a cell is a convex piece of space between the layer's planes.
 #include "extraction.h"
 
 #include <algorithm>
@@ -33,6 +34,8 @@ constexpr double kLeastCovered = 0.15;  // of a plane's facets that must lie und
 constexpr double kMostLost = 0.03;      // of surface and volume when planes are left out
 constexpr double kSubstantial = 0.05;   // of the largest component: one that is kept besides it
 constexpr double kNoOther = 2;          // likewise: none is
+constexpr double kFacetPrice = 0.002;   // of tolerance × surface: volume that a facet must shape
+constexpr double kMostMoved = 4;        // times the tolerance: how far saving a facet may go
 constexpr int kPruningRounds = 2;
 constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
 
@@ -48,6 +51,7 @@ std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& 
 struct Attempt {
   Partition partition;
   Evidence evidence;
+  std::vector<char> is_forced_out;
   std::vector<char> is_inside;  ///< empty: nothing is
   PolygonMesh mesh;
   double mended = 0;  ///< m³
@@ -59,7 +63,7 @@ struct Attempt {
 std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& sight,
                         const ExtractionOptions& options, Attempt& attempt) {
   const Partition& partition = attempt.partition;
-  const std::vector<char> is_forced = forced_outside(partition, plan);
+  const std::vector<char>& is_forced = attempt.is_forced_out;
   const double least_share = options.is_paper ? kNoOther : kSubstantial;
   std::vector<char> is_inside;
   if (options.is_paper) {
@@ -94,6 +98,7 @@ Attempt try_plan(const CuttingPlan& plan, const Planes& planes, Sight& sight,
   Attempt attempt;
   attempt.partition = partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
   attempt.warnings = attempt.partition.warnings;
+  attempt.is_forced_out = forced_outside(attempt.partition, plan);
   attempt.is_inside = label(plan, planes, sight, options, attempt);
   if (!attempt.is_inside.empty())
     attempt.mesh =
@@ -178,6 +183,25 @@ void prune(CuttingPlan plan, const Planes& planes, Sight& sight, const Extractio
   }
 }
 
+/// Facets that are not worth their price at the layer's tolerance go.
+void simplify(const ExtractionOptions& options, Attempt& attempt) {
+  const double area = surface_area(attempt.mesh.mesh());
+  const double volume = signed_volume(attempt.mesh.mesh());
+  std::vector<char> is_inside = attempt.is_inside;
+  simplify_cells(attempt.partition, attempt.evidence, attempt.is_forced_out,
+                 {.facet_volume = kFacetPrice * options.tolerance * area,
+                  .depth = kMostMoved * options.tolerance},
+                 is_inside);
+  double mended = 0;
+  PolygonMesh mesh = extract_surface(attempt.partition, is_inside, false, &mended);
+  if (mesh.facets.empty() || mesh.facets.size() >= attempt.mesh.facets.size() ||
+      std::abs(signed_volume(mesh.mesh()) - volume) > kMostLost * volume)
+    return;
+  attempt.is_inside = std::move(is_inside);
+  attempt.mesh = std::move(mesh);
+  attempt.mended = mended;
+}
+
 }  // namespace
 
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes, Sight& sight,
@@ -187,6 +211,7 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   if (attempt.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
+  if (options.tolerance > 0) simplify(options, attempt);
   Extraction result;
   result.mesh = std::move(attempt.mesh);
   result.cells = static_cast<std::int64_t>(attempt.partition.cells.size());

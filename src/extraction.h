@@ -18,6 +18,8 @@ struct ExtractionOptions {
   int nr = 100;
   double growth = 0.1;      ///< metres an outline's hull reaches beyond the outline
   double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut
+  double tolerance = 0;     ///< metres, robust: planes whose outline lies this near to a larger one
+                            ///< that looks about the same way take its place
   int max_cells = 200000;
 };
 

@@ -98,6 +98,12 @@ int BoundaryFinder::line_of(int plane_a, int plane_b) {
   return line;
 }
 
+std::function<bool(int, int)> BoundaryFinder::less_on(int line) const {
+  return [this, planes = planes_of_line_[line]](int v, int w) {
+    return along_line_less(partition_, planes[0], planes[1], v, w);
+  };
+}
+
 void BoundaryFinder::add_touching(const Boundary& boundary,
                                   std::vector<std::pair<int, int>>& vertices_of_line) {
   std::vector<char> is_on_boundary(partition_.vertices.size(), 0),
@@ -118,21 +124,37 @@ void BoundaryFinder::add_touching(const Boundary& boundary,
   }
 }
 
-Boundary BoundaryFinder::find(const std::vector<char>& is_inside) {
-  const auto inside = [&](int cell) { return cell >= 0 && is_inside[cell]; };
-  Boundary boundary;
-  std::vector<std::vector<int>> lines;                // per polygon and edge
-  std::vector<std::pair<int, int>> vertices_of_line;  // (line, vertex)
-  for (std::size_t p = 0; p < partition_.pieces.size(); ++p) {
+std::vector<std::vector<int>> BoundaryFinder::sort_lines(
+    std::vector<std::pair<int, int>> vertices_of_line) const {
+  std::sort(vertices_of_line.begin(), vertices_of_line.end());
+  vertices_of_line.erase(std::unique(vertices_of_line.begin(), vertices_of_line.end()),
+                         vertices_of_line.end());
+  std::vector<std::vector<int>> along(planes_of_line_.size());
+  for (const auto& [line, vertex] : vertices_of_line) along[line].push_back(vertex);
+  for (std::size_t line = 0; line < along.size(); ++line)
+    if (along[line].size() > 2)
+      std::sort(along[line].begin(), along[line].end(), less_on(static_cast<int>(line)));
+  return along;
+}
+
+std::vector<int> BoundaryFinder::split_edge(int a, int b, int line,
+                                            const std::vector<int>& order) const {
+  std::vector<int> chain = {a};
+  if (order.size() == 2) return chain;
+  const auto less = less_on(line);
+  const auto at = [&](int v) {
+    return std::lower_bound(order.begin(), order.end(), v, less) - order.begin();
+  };
+  const auto from = at(a), to = at(b), step = from < to ? std::ptrdiff_t{1} : -1;
+  for (auto j = from + step; j != to; j += step) chain.push_back(order[j]);
+  return chain;
+}
+
+std::vector<std::vector<int>> BoundaryFinder::lines_of(
+    const std::vector<int>& pieces, std::vector<std::pair<int, int>>& vertices_of_line) {
+  std::vector<std::vector<int>> lines;
+  for (const int p : pieces) {
     const Partition::Piece& piece = partition_.pieces[p];
-    if (inside(piece.cells[0]) == inside(piece.cells[1])) continue;
-    const bool is_reversed = inside(piece.cells[1]);
-    boundary.polygons.push_back({static_cast<int>(p),
-                                 piece.plane,
-                                 is_reversed,
-                                 piece.cells[is_reversed],
-                                 piece.cells[!is_reversed],
-                                 {}});
     lines.emplace_back();
     const std::size_t n = piece.polygon.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -141,40 +163,68 @@ Boundary BoundaryFinder::find(const std::vector<char>& is_inside) {
       vertices_of_line.emplace_back(lines.back()[i], piece.polygon[(i + 1) % n]);
     }
   }
-  add_touching(boundary, vertices_of_line);
-  std::sort(vertices_of_line.begin(), vertices_of_line.end());
-  vertices_of_line.erase(std::unique(vertices_of_line.begin(), vertices_of_line.end()),
-                         vertices_of_line.end());
-  std::vector<std::vector<int>> along(planes_of_line_.size());
-  for (const auto& [line, vertex] : vertices_of_line) along[line].push_back(vertex);
-  const auto less_on = [&](int line) {
-    return [this, planes = planes_of_line_[line]](int v, int w) {
-      return along_line_less(partition_, planes[0], planes[1], v, w);
-    };
-  };
-  for (std::size_t line = 0; line < along.size(); ++line)
-    if (along[line].size() > 2)
-      std::sort(along[line].begin(), along[line].end(), less_on(static_cast<int>(line)));
+  return lines;
+}
 
+Boundary BoundaryFinder::find(const std::vector<char>& is_inside) {
+  const auto inside = [&](int cell) { return cell >= 0 && is_inside[cell]; };
+  Boundary boundary;
+  std::vector<int> pieces;
+  for (std::size_t p = 0; p < partition_.pieces.size(); ++p) {
+    const Partition::Piece& piece = partition_.pieces[p];
+    if (inside(piece.cells[0]) == inside(piece.cells[1])) continue;
+    const bool is_reversed = inside(piece.cells[1]);
+    pieces.push_back(static_cast<int>(p));
+    boundary.polygons.push_back({static_cast<int>(p),
+                                 piece.plane,
+                                 is_reversed,
+                                 piece.cells[is_reversed],
+                                 piece.cells[!is_reversed],
+                                 {}});
+  }
+  std::vector<std::pair<int, int>> vertices_of_line;  // (line, vertex)
+  const std::vector<std::vector<int>> lines = lines_of(pieces, vertices_of_line);
+  add_touching(boundary, vertices_of_line);
+  const std::vector<std::vector<int>> along = sort_lines(std::move(vertices_of_line));
   for (std::size_t k = 0; k < boundary.polygons.size(); ++k) {
     Boundary::Polygon& polygon = boundary.polygons[k];
-    const Partition::Piece& piece = partition_.pieces[polygon.piece];
-    const std::size_t n = piece.polygon.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const int a = piece.polygon[i], b = piece.polygon[(i + 1) % n];
-      polygon.loop.push_back(a);
-      const std::vector<int>& order = along[lines[k][i]];
-      if (order.size() == 2) continue;
-      const auto less = less_on(lines[k][i]);
-      const auto at = [&](int v) {
-        return std::lower_bound(order.begin(), order.end(), v, less) - order.begin();
-      };
-      const auto from = at(a), to = at(b), step = from < to ? std::ptrdiff_t{1} : -1;
-      for (auto j = from + step; j != to; j += step) polygon.loop.push_back(order[j]);
-    }
+    const std::vector<int>& corners = partition_.pieces[polygon.piece].polygon;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (const int v : split_edge(corners[i], corners[(i + 1) % corners.size()], lines[k][i],
+                                    along[lines[k][i]]))
+        polygon.loop.push_back(v);
     if (polygon.is_reversed) std::reverse(polygon.loop.begin(), polygon.loop.end());
   }
   return boundary;
+}
+
+std::vector<std::pair<int, int>> BoundaryFinder::find_neighbours() {
+  std::vector<int> pieces(partition_.pieces.size());
+  std::iota(pieces.begin(), pieces.end(), 0);
+  std::vector<std::pair<int, int>> vertices_of_line;
+  const std::vector<std::vector<int>> lines = lines_of(pieces, vertices_of_line);
+  const std::vector<std::vector<int>> along = sort_lines(std::move(vertices_of_line));
+  std::vector<std::array<int, 4>> stretches;  // plane, both ends, piece
+  for (const int p : pieces) {
+    const Partition::Piece& piece = partition_.pieces[p];
+    const std::size_t n = piece.polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const int end = piece.polygon[(i + 1) % n];
+      std::vector<int> chain = split_edge(piece.polygon[i], end, lines[p][i], along[lines[p][i]]);
+      chain.push_back(end);
+      for (std::size_t j = 0; j + 1 < chain.size(); ++j)
+        stretches.push_back(
+            {piece.plane, std::min(chain[j], chain[j + 1]), std::max(chain[j], chain[j + 1]), p});
+    }
+  }
+  std::sort(stretches.begin(), stretches.end());
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t i = 0; i + 1 < stretches.size(); ++i)
+    if (std::equal(stretches[i].begin(), stretches[i].begin() + 3, stretches[i + 1].begin()))
+      pairs.emplace_back(stretches[i][3], stretches[i + 1][3]);
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 std::vector<std::vector<int>> find_pinches(const Boundary& boundary) {

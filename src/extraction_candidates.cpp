@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kBoxGrowth = 0.05;  // of the diagonal
 constexpr double kSnap = 0.05;       // metres: a side nearer than this to a plane takes its place
+constexpr double kWholeSide = 0.2;   // of the side's area: a plane that may draw it in by more
 constexpr double kSnapCosine = 0.9998;  // 1.1 degrees
 constexpr double kThinnest = 0.5;       // metres: a layer flatter than this is extruded inward
 
@@ -70,7 +71,7 @@ Box outline_box(const Planes& planes, const std::vector<int>& which) {
 /// Full-extent planes where the building ends on each side. Where a large plane lies there already,
 /// its own place and slope are used, so that no sliver is left between the two.
 void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const Box& all,
-               Box layer, CuttingPlan& plan) {
+               Box layer, double snap, CuttingPlan& plan) {
   for (int axis = 0; axis < 2; ++axis) {
     if (layer.size()[axis] >= kThinnest) continue;
     Vec3 outward = Vec3::Zero();
@@ -83,11 +84,14 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
     Vec3 direction = Vec3::Zero();
     direction[side / 2] = side % 2 ? 1 : -1;
     const double extent = direction.dot(side % 2 ? layer.max : layer.min);
+    const Vec3 size = layer.size();
+    const double across = size[(side / 2 + 1) % 3] * size[(side / 2 + 2) % 3];
     int nearest = -1;
     for (const int p : layer_planes) {
       const Plane& plane = planes.planes[p];
+      const double least = plane.area < kWholeSide * across ? kSnap : snap;
       if (plane.normal.dot(direction) < kSnapCosine ||
-          std::abs(direction.dot(plane.centroid) - extent) > kSnap)
+          std::abs(direction.dot(plane.centroid) - extent) > least)
         continue;
       if (nearest < 0 || plane.area > planes.planes[nearest].area) nearest = p;
     }
@@ -121,13 +125,17 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   if (!options.is_paper) {
     const Vec3 margin = Vec3::Constant(std::max(kThinnest, kBoxGrowth * all.diagonal()));
     plan.box.min -= margin, plan.box.max += margin;
-    add_sides(planes, layer_planes, all, outline_box(planes, layer_planes), plan);
+    add_sides(planes, layer_planes, all, outline_box(planes, layer_planes),
+              std::max(kSnap, options.tolerance), plan);
   }
-  for (const int p : layer_planes) {
-    const Plane& plane = planes.planes[p];
+  const std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
+  for (std::size_t i = 0; i < layer_planes.size(); ++i) {
+    const int p = layer_planes[i];
+    const Plane& leader = planes.planes[leaders[i]];
     if (std::find(plan.input.begin(), plan.input.end(), p) != plan.input.end()) continue;
-    plan.planes.push_back(
-        {plane.normal, plane.offset, grown_hull(plane, plane.outline.vertices, options.growth), p});
+    plan.planes.push_back({leader.normal, leader.offset,
+                           grown_hull(leader, planes.planes[p].outline.vertices, options.growth),
+                           leaders[i]});
     plan.input.push_back(p);
   }
   if (!options.is_paper) add_walls(planes, layer_planes, rays, plan);

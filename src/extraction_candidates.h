@@ -25,6 +25,11 @@ struct CuttingPlan {
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
                       const RayScene& rays, const ExtractionOptions& options);
 
+/// Per plane of `layer_planes` the plane whose place it takes, most often itself: a larger one that
+/// looks about the same way and that its whole outline is within `tolerance` metres of.
+std::vector<int> find_leaders(const Planes& planes, const std::vector<int>& layer_planes,
+                              double tolerance);
+
 /// Appends vertical candidates under roof borders that no plane supports. \pre the sides are in
 /// `plan`.
 void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,

@@ -233,6 +233,10 @@ void measure_coverage(const Partition& partition, const Planes& planes,
       64);
 }
 
+double inside_vote(const Vote& vote, double escape) {
+  return vote.seen + kRoofVote * vote.sheltered - escape * vote.exposed;
+}
+
 std::vector<char> threshold_cells(const Evidence& evidence,
                                   const std::vector<char>& is_forced_out) {
   std::vector<char> is_inside(evidence.cells.size());
@@ -293,9 +297,7 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
   const long n = static_cast<long>(partition.cells.size()), source = n, sink = n + 1;
   std::vector<Capacity> for_inside(n), for_outside(n);
   for (long c = 0; c < n; ++c) {
-    const Vote& cell = evidence.cells[c];
-    const double v = (cell.seen + kRoofVote * cell.sheltered - options.escape * cell.exposed) *
-                     evidence.weight[c];
+    const double v = inside_vote(evidence.cells[c], options.escape) * evidence.weight[c];
     for_inside[c] = whole(v), for_outside[c] = whole(-v);
   }
   Graph graph(n + 2);

@@ -46,6 +46,21 @@ struct CutOptions {
 std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence,
                             const std::vector<char>& is_forced_out, const CutOptions& options = {});
 
+/// What speaks for the inside, less what speaks against it; an exposed ray counts `escape`.
+double inside_vote(const Vote& vote, double escape = 1);
+
+struct SimplifyOptions {
+  double facet_volume = 0;  ///< m³ that may change sides for each facet that this saves
+  double depth = 0;         ///< metres that the surface may move
+};
+
+/// Turns the cells under or over a facet round where that leaves fewer facets; never the forced
+/// ones. Ends after a few rounds over all facets. Returns how many facets went, components and
+/// pinches aside.
+int simplify_cells(const Partition& partition, const Evidence& evidence,
+                   const std::vector<char>& is_forced_out, const SimplifyOptions& options,
+                   std::vector<char>& is_inside);
+
 /// Share of the outlines' area that lies on the surface of the inside, looking outward.
 double explained_share(const Partition& partition, const Evidence& evidence,
                        const std::vector<char>& is_inside);

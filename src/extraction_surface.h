@@ -2,7 +2,9 @@
 // polygons.
 #pragma once
 
+#include <functional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "geometry.h"
@@ -28,9 +30,20 @@ class BoundaryFinder {
  public:
   explicit BoundaryFinder(const Partition& partition) : partition_(partition) {}
   Boundary find(const std::vector<char>& is_inside);
+  /// Pairs of pieces (a < b, rising) of one plane that have a stretch of an edge in common.
+  std::vector<std::pair<int, int>> find_neighbours();
 
  private:
   int line_of(int plane_a, int plane_b);
+  /// Orders vertices of the line.
+  std::function<bool(int, int)> less_on(int line) const;
+  /// Per piece the line of each edge; appends the ends to `vertices_of_line`.
+  std::vector<std::vector<int>> lines_of(const std::vector<int>& pieces,
+                                         std::vector<std::pair<int, int>>& vertices_of_line);
+  /// Per line its vertices in order.
+  std::vector<std::vector<int>> sort_lines(std::vector<std::pair<int, int>> vertices_of_line) const;
+  /// The vertices from a to b, without b, of a line's.
+  std::vector<int> split_edge(int a, int b, int line, const std::vector<int>& order) const;
   /// Vertices of the boundary that only touch a line of it, as corners of pieces between equal
   /// cells.
   void add_touching(const Boundary& boundary, std::vector<std::pair<int, int>>& vertices_of_line);

@@ -6,6 +6,7 @@
 #include "pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <tuple>
 
@@ -20,7 +21,9 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
   to.insert(to.end(), from.begin(), from.end());
 }
 
-constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
+constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
+constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
+constexpr double kVolumeChange = 0.2;      // of the finer layer's volume
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -56,11 +59,19 @@ std::vector<int> cutting_order(const Building& b, int k, const Options& o) {
   return order;
 }
 
+/// Metres: what is no detail on layer k.
+double tolerance(const Building& b, int k, const Options& o) {
+  if (is_paper(o)) return 0;
+  const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;
+  return std::max(share, kLeastTolerance) * b.planes.box.diagonal();
+}
+
 void extract(Building& b, Layer& layer, Sight& sight, const Options& o) {
   try {
     const std::vector<int> planes = cutting_order(b, layer.layer, o);
-    Extraction result =
-        extract_layer(b.planes, planes, sight, {.is_paper = is_paper(o), .nr = o.nr});
+    Extraction result = extract_layer(
+        b.planes, planes, sight,
+        {.is_paper = is_paper(o), .nr = o.nr, .tolerance = tolerance(b, layer.layer, o)});
     layer.mesh = std::move(result.mesh);
     for (const std::string& w : result.warnings)
       b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
@@ -236,9 +247,8 @@ void mesh_building(Building& b, const Options& options) {
 }
 
 std::vector<PlacedPart> place_parts(const Building& b, const Source& source, const Truth& truth) {
-  const auto named = std::find_if(truth.begin(), truth.end(), [&](const TruthBuilding& t) {
-    return t.name == source.name;
-  });
+  const auto named = std::find_if(truth.begin(), truth.end(),
+                                  [&](const TruthBuilding& t) { return t.name == source.name; });
   if (named == truth.end() || b.has_failed()) return {};
   const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
   std::vector<Mesh> layers;

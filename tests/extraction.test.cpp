@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "../src/error.h"
+#include "../src/extraction_candidates.h"
 #include "../src/extraction_labels.h"
 #include "../src/metrics.h"
 #include "../src/parallel.h"
@@ -370,4 +371,54 @@ TEST_CASE("a detached annex is kept, a small shed is not") {
   CHECK(check(annex.mesh).components == 2);
   CHECK(signed_volume(annex.mesh.mesh()) == Approx(500 + 144));
   expect_solid(extract(join(house, box_mesh({20, 0, 0}, {22, 2, 2}))).mesh, 500);
+}
+
+TEST_CASE("what is within the tolerance of a larger plane is no detail of its own") {
+  const Mesh step = join(box_mesh({0, 0, 0}, {8, 6, 5}), box_mesh({8, 0.2, 0}, {12, 6, 5}));
+  expect_counts(extract(step).mesh, 12, 8, 20);
+  const PolygonMesh mesh = extract(step, {.tolerance = 0.3}).mesh;
+  expect_counts(mesh, 8, 6, 12);
+  expect_solid(mesh, 360);
+}
+
+TEST_CASE("planes that look elsewhere are no leaders, nor are those farther than the tolerance") {
+  const Planes planes = planes_of_mesh(gable_house(8, 6, 5, 0.4));
+  const std::vector<int> all = all_planes(planes);
+  CHECK(find_leaders(planes, all, 0) == all);
+  CHECK(find_leaders(planes, all, 0.3) == all);
+  const std::vector<int> merged = find_leaders(planes, all, 1);  // 15 degrees between the roofs
+  CHECK(std::set<int>(merged.begin(), merged.end()).size() == 6);
+}
+
+TEST_CASE("a chip goes, a chimney stays") {
+  const Mesh house = gable_house(8, 6, 5, 3);
+  const Mesh chip = box_mesh({3, -0.1, 1}, {3.4, 1, 1.4});
+  const Mesh chimney = box_mesh({2, 1, 5}, {2.6, 1.6, 8.5});
+  const PolygonMesh both = extract(join(join(house, chip), chimney)).mesh;
+  CHECK(both.facets.size() == 17);
+  const PolygonMesh one = extract(join(join(house, chip), chimney), {.tolerance = 0.1}).mesh;
+  CHECK(one.facets.size() == 12);
+  CHECK(check(one).is_closed);
+}
+
+TEST_CASE("turning cells saves facets within its limits and never turns forced cells") {
+  // A box of 4 with a step of 0.2 in one corner: 9 facets, 6 without the step.
+  const Planes planes =
+      planes_of_mesh(join(box_mesh({0, 0, 0}, {4, 4, 4}), box_mesh({4, 0, 0}, {4.2, 1, 1})));
+  const std::vector<int> all = all_planes(planes);
+  Sight sight(planes);
+  const CuttingPlan plan = plan_cuts(planes, all, sight.rays, {});
+  const Partition partition = partition_space(plan.planes, plan.box);
+  Evidence evidence = gather_evidence(partition, sight, {});
+  measure_coverage(partition, planes, plan.input, evidence);
+  const std::vector<char> nothing(partition.cells.size(), 0), all_cells(partition.cells.size(), 1);
+  const std::vector<char> before = cut_cells(partition, evidence, nothing);
+  const auto saved = [&](const SimplifyOptions& options, const std::vector<char>& forced) {
+    std::vector<char> is_inside = before;
+    return simplify_cells(partition, evidence, forced, options, is_inside);
+  };
+  CHECK(saved({.facet_volume = 1, .depth = 0.3}, nothing) == 3);
+  CHECK(saved({.facet_volume = 1, .depth = 0.3}, all_cells) == 3);  // the step is taken away
+  CHECK(saved({.facet_volume = 1, .depth = 0.1}, nothing) == 0);
+  CHECK(saved({.facet_volume = 0.01, .depth = 0.3}, nothing) == 0);
 }
