@@ -11,6 +11,7 @@
 #include "../error.h"
 #include "../parallel.h"
 #include "../pipeline.h"
+#include "../report_pictures.h"
 #include "../store.h"
 #include "cli.h"
 #include "input_options.h"
@@ -159,6 +160,13 @@ int mesh(const StageArguments& a) {
   return exit_code(problems);
 }
 
+Pictures draw(Scene& scene, int layers) {
+  Depot memory;
+  Gallery gallery(scene.buildings.size(), layers, memory);
+  parallel_for(scene.buildings.size(), [&](std::size_t i) { gallery.drop(scene.buildings[i]); });
+  return gallery.take(scene);
+}
+
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
   limit_threads(a.run.threads);
@@ -169,9 +177,12 @@ int export_files(const StageArguments& a) {
   stores.front().get_coanalysis(scene);
   check_exportable(scene);
   make_folder(a.output.out);
+  const Options options = stores.front().options();
+  Pictures pictures;
+  if (!a.output.has_no_page) pictures = draw(scene, options.layers);
   export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, stores.front().options(), seconds.count(), a.output, log);
+  return finish(scene, options, seconds.count(), std::move(pictures), a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
