@@ -30,7 +30,7 @@ namespace {
 
 constexpr int kRestarts = 20, kMaxIterations = 100;
 constexpr double kSameEigenvalue = 1e-9;
-constexpr int kVoters = 5;  // of a prior
+constexpr int kVoters = 5;             // of a prior
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
 using Features = Eigen::MatrixXd;  // a segment a row
@@ -181,6 +181,22 @@ void place_flat(const std::vector<Descriptor>& segments, const std::vector<int>&
   }
 }
 
+// What planes enclose only in part is of a kind whatever its size: all trays, and all niches, go to
+// the layer on which most of them are, the coarsest of equals. The votes are those of the scene, or
+// of a prior that knows the kind.
+void settle_forms(const std::vector<Descriptor>& segments, const std::vector<Descriptor>& voters,
+                  const std::vector<int>& layer_of_voter, int layers, std::vector<int>& layer) {
+  for (const Form form : {Form::kTray, Form::kNiche}) {
+    std::vector<int> votes(layers, 0);
+    for (std::size_t v = 0; v < voters.size(); ++v)
+      if (voters[v].form == form) ++votes[layer_of_voter[v]];
+    const auto most = std::max_element(votes.begin(), votes.end());
+    if (*most == 0) continue;
+    for (std::size_t s = 0; s < segments.size(); ++s)
+      if (segments[s].form == form) layer[s] = static_cast<int>(most - votes.begin());
+  }
+}
+
 }  // namespace
 
 Clustering classify_segments(const std::vector<Descriptor>& segments, const Prior& prior,
@@ -207,9 +223,14 @@ Clustering classify_segments(const std::vector<Descriptor>& segments, const Prio
     std::partial_sort(nearest.begin(), end, nearest.end());
     std::vector<double> votes(options.layers, 0.0);
     for (auto n = nearest.begin(); n != end; ++n) votes[known[n->second].second] -= n->first;
-    result.layer[s] = std::max(
-        1, static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin()));
+    result.layer[s] =
+        std::max(1, static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin()));
   });
+  std::vector<Descriptor> voters;
+  std::vector<int> layer_of_voter;
+  for (const auto& [descriptor, layer] : known)
+    voters.push_back(*descriptor), layer_of_voter.push_back(layer);
+  settle_forms(segments, voters, layer_of_voter, options.layers, result.layer);
   return result;
 }
 
@@ -229,6 +250,9 @@ Clustering cluster_segments(const std::vector<Descriptor>& segments,
   if (!classes.empty()) {
     for (std::size_t i = 0; i < ids.size(); ++i) result.layer[ids[i]] = 1 + classes[i];
     place_flat(segments, flat, ids, classes, k, result.layer);
+    if (!options.is_paper)
+      settle_forms(segments, segments, std::vector<int>(result.layer), options.layers,
+                   result.layer);
     return result;
   }
   if (options.layering == Layering::kSpectral && k > 1)

@@ -75,6 +75,7 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& si
   attempt.evidence = gather_evidence(partition, sight, {.nr = options.nr});
   const Evidence& evidence = attempt.evidence;
   measure_coverage(partition, planes, plan.input, attempt.evidence);
+  ask_hollows(partition, plan.hollows, attempt.evidence);
   double best = -1;
   for (const double escape : kEscapes) {
     std::vector<char> trial = cut_cells(partition, evidence, is_forced,
@@ -122,8 +123,9 @@ std::vector<double> explained_areas(const Attempt& attempt, std::size_t planes) 
 }
 
 /// Per input plane whether the surface is worth its cut: one facet that is no sliver, and enough of
-/// the plane's facets under its outline.
-std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<double>& explained) {
+/// the plane's facets under its outline; or it bounds a hollow.
+std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<Hollow>& hollows,
+                                    const std::vector<double>& explained) {
   std::vector<char> is_wide(explained.size(), 0);
   std::vector<double> total(explained.size(), 0);
   for (const PolygonMesh::Facet& facet : attempt.mesh.facets) {
@@ -142,13 +144,15 @@ std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<do
   }
   for (std::size_t p = 0; p < is_wide.size(); ++p)
     is_wide[p] = is_wide[p] && explained[p] >= kLeastCovered * total[p];
+  for (const Hollow& hollow : hollows)
+    for (const int p : hollow.bounds) is_wide[p] = 1;
   return is_wide;
 }
 
 /// The plan without the planes that the surface does not need.
 CuttingPlan leaner(const CuttingPlan& plan, const Attempt& attempt,
                    const std::vector<char>& is_worthwhile) {
-  CuttingPlan lean{{}, {}, plan.box, plan.limits};
+  CuttingPlan lean{{}, {}, plan.box, plan.limits, plan.hollows};
   for (std::size_t i = 0; i < plan.planes.size(); ++i) {
     const int plane = attempt.partition.cuts[i].plane;
     const int source = plane < 0 ? -1 : attempt.partition.planes[plane].source_plane;
@@ -165,7 +169,7 @@ void prune(CuttingPlan plan, const Planes& planes, Sight& sight, const Extractio
            Attempt& best) {
   for (int round = 0; round < kPruningRounds; ++round) {
     const std::vector<double> before = explained_areas(best, planes.planes.size());
-    const std::vector<char> is_worthwhile = worthwhile_planes(best, before);
+    const std::vector<char> is_worthwhile = worthwhile_planes(best, plan.hollows, before);
     CuttingPlan lean = leaner(plan, best, is_worthwhile);
     if (lean.planes.size() == plan.planes.size()) return;
     Attempt next = try_plan(lean, planes, sight, options);

@@ -128,7 +128,11 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
     add_sides(planes, layer_planes, all, outline_box(planes, layer_planes),
               std::max(kSnap, options.tolerance), plan);
   }
-  const std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
+  std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
+  if (!options.is_paper) {
+    find_hollows(planes, layer_planes, plan);
+    keep_bounds(layer_planes, plan, leaders);
+  }
   for (std::size_t i = 0; i < layer_planes.size(); ++i) {
     const int p = layer_planes[i];
     const Plane& leader = planes.planes[leaders[i]];
@@ -138,6 +142,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
                            leaders[i]});
     plan.input.push_back(p);
   }
+  for (const Hollow& hollow : plan.hollows) add_rims(hollow, plan);
   if (!options.is_paper) add_walls(planes, layer_planes, rays, plan);
   return plan;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "extraction.h"
+#include "hollows.h"
 #include "partition.h"
 #include "planes.h"
 
@@ -20,6 +21,7 @@ struct CuttingPlan {
     double offset;
   };
   std::vector<Limit> limits;  ///< cells with their centroid beyond one of them are outside
+  std::vector<Hollow> hollows;
 };
 
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
@@ -34,5 +36,13 @@ std::vector<int> find_leaders(const Planes& planes, const std::vector<int>& laye
 /// `plan`.
 void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
                CuttingPlan& plan);
+
+/// The layer's trays, niches and shafts; the planes that end them lead themselves
+/// (extraction_hollows.cpp).
+void find_hollows(const Planes& planes, std::vector<int> layer_planes, CuttingPlan& plan);
+void keep_bounds(const std::vector<int>& layer_planes, const CuttingPlan& plan,
+                 std::vector<int>& leaders);
+/// The faces that a hollow lacks.
+void add_rims(const Hollow& hollow, CuttingPlan& plan);
 
 }  // namespace colod

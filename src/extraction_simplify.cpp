@@ -131,6 +131,7 @@ class Simplifier {
     for (const int p : facet)
       for (const int cell : partition_.pieces[p].cells) {
         if (inside(cell) != is_removing) continue;
+        if (cell >= 0 && !evidence_.is_told.empty() && evidence_.is_told[cell]) return {};
         if (!is_removing && (cell < 0 || is_forced_out_[cell])) return {};
         cells.push_back(cell);
       }

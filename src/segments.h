@@ -17,9 +17,13 @@ struct SegmentOptions {
   VisibilityOptions visibility;
 };
 
+/// What planes enclose only in part is a kind of its own (hollows.h).
+enum class Form { kPlain, kTray, kNiche };
+
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one
   bool is_alcove = false;   ///< a recess: its voxels lie outside the building
+  Form form = Form::kPlain;
   std::int64_t voxels = 0;
   double volume = 0;  ///< m³, voxels × voxel volume
   double area = 0;    ///< m² of its planes

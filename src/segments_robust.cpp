@@ -121,8 +121,10 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   SegmentDraft draft;
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
+  give_to_hollows(planes, grid, options.alcove_area, draft);
   for (std::size_t s = 0; s < draft.segments.size(); ++s)
-    draft.coverage.push_back(
+    if (draft.segments[s].form == Form::kPlain)
+      draft.coverage.push_back(
         {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
   return finish_segments(planes, std::move(draft));
 }

@@ -14,8 +14,8 @@
 // and a Lagrangian upper bound; where they do not meet and at most `exact_segments` segments are to
 // be decided, lp_solve gets the whole program.
 //
-// With a prior (the paper's mode for single buildings) I_j − M_j are the prior's segments beyond its
-// layer 0: f_co is linear, and each building's program is on its own.
+// With a prior (the paper's mode for single buildings) I_j − M_j are the prior's segments beyond
+// its layer 0: f_co is linear, and each building's program is on its own.
 //
 // Beyond `exact_similarities` segments to be decided, segments are compared with prototypes: then
 // `objective` is proven to be no more than E_0 and the bound no less than the optimum, so that the
@@ -44,6 +44,9 @@ constexpr int kMaxSteps = 400;        // of the bound
 constexpr double kStepWork = 4e9;     // items × prototypes looked at by all steps together
 constexpr double kStartWork = 5e6;    // by all starts together, but 3 there are
 constexpr double kPolishWork = 2e8;   // nodes × items × prototypes in a round
+constexpr double kDoubt = 2;          // times the least share, and a part of it: near it
+constexpr double kAlike = 0.75;       // similarity of segments that decide together
+constexpr std::ptrdiff_t kMostAlike = 50;
 constexpr int kPolishRounds = 8, kMaxBlockNodes = 400, kMinBlockNodes = 20;
 
 std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& buildings) {
@@ -175,14 +178,52 @@ int remove_small(const Block& block, const Model& model, const std::vector<doubl
   return removed;
 }
 
+// A segment whose share is near the threshold.
+struct Doubtful {
+  const Descriptor* segment;
+  int building;
+  double share;
+  double* verdict;  ///< the share that counts
+};
+
+// Segments near the threshold that are alike in several buildings decide together, by the median of
+// their shares: a stairhead with 2.1 % of one block's voxels and another with 1.9 % are one kind.
+void decide_together(const std::vector<SelectionBuilding>& buildings, double least, double eta,
+                     std::vector<std::vector<double>>& shares) {
+  std::vector<Doubtful> doubtful;
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    for (std::size_t s = 0; s < shares[i].size(); ++s)
+      if (shares[i][s] >= least / kDoubt && shares[i][s] <= least * kDoubt)
+        doubtful.push_back(
+            {&buildings[i].segments[s], static_cast<int>(i), shares[i][s], &shares[i][s]});
+  std::stable_sort(doubtful.begin(), doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
+    return a.segment->extent < b.segment->extent;
+  });
+  const auto n = static_cast<std::ptrdiff_t>(doubtful.size());
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    std::vector<double> alike = {doubtful[i].share};
+    for (const int step : {-1, 1})
+      for (std::ptrdiff_t j = i + step; j >= 0 && j < n && std::abs(j - i) <= kMostAlike; j += step)
+        if (doubtful[j].building != doubtful[i].building &&
+            segment_similarity(*doubtful[i].segment, *doubtful[j].segment, eta) >= kAlike)
+          alike.push_back(doubtful[j].share);
+    std::sort(alike.begin(), alike.end());
+    *doubtful[i].verdict = 0.5 * (alike[(alike.size() - 1) / 2] + alike[alike.size() / 2]);
+  }
+}
+
 // Layer 0 by shares of voxels, after the optimum. One block a building that has segments, in order.
-void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model, double least,
-          Selection& result) {
+void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
+          const SelectionOptions& options, Selection& result) {
+  const double least = options.main_share;
+  std::vector<std::vector<double>> shares;
+  for (const SelectionBuilding& b : buildings) shares.push_back(voxel_shares(b));
+  decide_together(buildings, least, options.eta, shares);
   std::size_t next = 0;
   for (std::size_t i = 0; i < buildings.size(); ++i) {
     if (buildings[i].segments.empty()) continue;
     const Block& block = model.blocks[next++];
-    const std::vector<double> share = voxel_shares(buildings[i]);
+    const std::vector<double>& share = shares[i];
     if (share.empty()) continue;
     result.added += add_main(share, least, result.is_layer0[i]);
     result.removed += remove_small(block, model, share, least, result.is_layer0[i]);
@@ -229,8 +270,7 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                   100 * result.gap);
     result.warnings.push_back(text);
   }
-  if (!options.is_paper && options.main_share > 0)
-    tidy(buildings, model, options.main_share, result);
+  if (!options.is_paper && options.main_share > 0) tidy(buildings, model, options, result);
   result.seconds = since(start);
   return result;
 }

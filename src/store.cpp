@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 2;  // PRAGMA user_version
+constexpr int kFormat = 3;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -34,7 +34,7 @@ CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
   PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE segment(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
-  layer INTEGER, is_alcove INTEGER, voxels INTEGER, volume REAL, area REAL, extent REAL, is_flat INTEGER,
+  layer INTEGER, is_alcove INTEGER, form INTEGER, voxels INTEGER, volume REAL, area REAL, extent REAL, is_flat INTEGER,
   eigenvalues BLOB, d2 BLOB, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
@@ -42,6 +42,10 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
   segments INTEGER, geometric_error REAL, failure TEXT NOT NULL, validity BLOB, distances BLOB, vertices BLOB,
   facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, PRIMARY KEY(building, layer)) WITHOUT ROWID;
 )sql";
+
+Form form_of(std::int64_t stored) {
+  return stored == 1 ? Form::kTray : stored == 2 ? Form::kNiche : Form::kPlain;
+}
 
 /// One prepared statement: bind in order, step, read columns in order.
 class Statement {
@@ -379,13 +383,14 @@ void Store::Impl::put_planes(const Building& b) const {
 }
 
 void Store::Impl::put_segments(const Building& b) const {
-  Statement s = write("INSERT INTO segment VALUES(?,?,NULL,?,?,?,?,?,?,?,?)");
+  Statement s = write("INSERT INTO segment VALUES(?,?,NULL,?,?,?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < b.segments.segments.size(); ++i) {
     const Segment& g = b.segments.segments[i];
     const Descriptor& d = b.descriptors[i];
     s.bind(b.source.name)
         .bind(static_cast<int>(i))
         .bind(static_cast<int>(g.is_alcove))
+        .bind(static_cast<int>(g.form))
         .bind(g.voxels)
         .bind(g.volume)
         .bind(g.area)
@@ -537,13 +542,14 @@ void Store::Impl::get_planes(Building& b) const {
 
 void Store::Impl::get_segments(Building& b) const {
   Statement s = read(
-      "SELECT is_alcove, voxels, volume, area, extent, is_flat, eigenvalues, d2, layer FROM segment"
+      "SELECT is_alcove, form, voxels, volume, area, extent, is_flat, eigenvalues, d2, layer FROM segment"
       " WHERE building = ?1 ORDER BY id");
   s.bind(b.source.name);
   while (s.step()) {
     Segment g;
     Descriptor d;
     g.is_alcove = s.integer() != 0;
+    g.form = d.form = form_of(s.integer());
     g.voxels = s.integer();
     g.volume = d.volume = s.real();
     g.area = d.area = s.real();
@@ -621,7 +627,7 @@ Prior Store::prior() const {
   Prior prior;
   prior.layers = options().layers;
   Statement s = impl_->read(
-      "SELECT b.name, s.layer, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, s.d2"
+      "SELECT b.name, s.layer, s.form, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, s.d2"
       " FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, b.name, s.id");
   std::string last;
   while (s.step()) {
@@ -632,6 +638,7 @@ Prior Store::prior() const {
       throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
     Descriptor d;
     const auto layer = static_cast<int>(s.integer());
+    d.form = form_of(s.integer());
     d.volume = s.real();
     d.area = s.real();
     d.extent = s.real();

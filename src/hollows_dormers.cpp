@@ -1,0 +1,112 @@
+// Based on: hollows.cpp.
+// Differs: a dormer is closed, but on a mansard's steep slope it stands out by half a metre and no
+// ray
+//   parts it from the attic: its roof, a ledge on a steeper slope, then tells it.
+// Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
+#include <algorithm>
+#include <cmath>
+
+#include "hollows_parts.h"
+
+namespace colod::hollows {
+namespace {
+
+constexpr double kLeastRoof = 0.4, kMostRoof = 8;  // m² of T
+constexpr double kLeastHost = 4;                   // times T's area: R's
+constexpr double kCrossing = 0.966;                // cosine (15°) of T and R at most
+constexpr double kLeastRelief = 0.35;              // metres
+constexpr double kMostWall = 6;                    // m² of a dormer's wall
+
+/// Distances of a panel's outline from a plane.
+Range relief(const Panel& panel, const Plane& host) {
+  Range r;
+  for (const Vec3& x : panel.points) {
+    const double d = host.signed_distance(x);
+    r.extend({d, d});
+  }
+  return r;
+}
+
+bool stands_out(const Panel& roof, const Panel& host) {
+  const Vec3& n = host.plane->normal;
+  if (n.z() < 0.2 || n.z() > kLevel || host.plane->area < kLeastHost * roof.plane->area ||
+      n.dot(roof.plane->normal) > kCrossing)
+    return false;
+  const Range d = relief(roof, *host.plane);
+  if (d.low < -0.3 || d.low > kReach || d.high < kLeastRelief) return false;
+  const Vec3 across = beside(Vec3(n.x(), n.y(), 0).normalized());
+  const Range width = roof.along(across), host_width = host.along(across);
+  if (overlap(width, host_width) < 0.7 * width.length()) return false;
+  return std::all_of(roof.points.begin(), roof.points.end(), [&](const Vec3& x) {
+    return host.plane->signed_distance(x) > kReach ||
+           (x.z() > host.box.min.z() - 0.3 && x.z() < host.box.max.z() + 0.5);
+  });
+}
+
+struct Ledge {
+  const Panel *roof, *host;
+};
+
+std::vector<Ledge> find_ledges(const std::vector<Panel>& panels) {
+  std::vector<Ledge> ledges;
+  for (const Panel& p : panels) {
+    if (p.plane->normal.z() < 0.3 || p.plane->area < kLeastRoof || p.plane->area > kMostRoof)
+      continue;
+    const Panel* best = nullptr;
+    for (const Panel& host : panels)
+      if (is_near(p.box, host.box, kReach) && stands_out(p, host) &&
+          (!best || host.plane->area > best->plane->area))
+        best = &host;
+    if (best) ledges.push_back({&p, best});
+  }
+  return ledges;
+}
+
+Hollow make_dormer(const std::vector<Panel>& panels, const std::vector<Ledge>& ledges,
+                   const Ledge& first) {
+  const Plane& host = *first.host->plane;
+  Hollow dormer{Hollow::Kind::kDormer, {}, {}, {}, {}, {}, {}};
+  Box box;
+  for (const Ledge& l : ledges)
+    if (l.roof == first.roof ||
+        (l.host == first.host && is_near(l.roof->box, first.roof->box, 0.1))) {
+      dormer.planes.push_back(l.roof->id);
+      box.extend(l.roof->box);
+      dormer.solid.push_back({l.roof->plane->normal, l.roof->plane->offset});
+    }
+  const Vec3 across = beside(Vec3(host.normal.x(), host.normal.y(), 0).normalized());
+  Range width;
+  for (const Ledge& l : ledges)
+    if (std::find(dormer.planes.begin(), dormer.planes.end(), l.roof->id) != dormer.planes.end())
+      width.extend(l.roof->along(across));
+  dormer.solid.push_back({-host.normal, -host.offset});
+  dormer.solid.push_back({across, width.high});
+  dormer.solid.push_back({-across, -width.low});
+  dormer.solid.push_back({-Vec3::UnitZ(), -(box.min.z() - 2.5)});
+  const Vec3 out = Vec3(host.normal.x(), host.normal.y(), 0).normalized();
+  dormer.solid.push_back({out, first.roof->along(out).high + 0.1});
+  for (const Panel& p : panels) {
+    if (!p.is_wall || p.plane->area > kMostWall || !is_near(p.box, box, 0.25)) continue;
+    const Range d = relief(p, host), own = p.along(across);
+    if (d.low > -0.4 && d.high > 0.2 && own.low > width.low - 0.3 && own.high < width.high + 0.3 &&
+        p.box.max.z() < box.max.z() + 0.2)
+      dormer.planes.push_back(p.id);
+  }
+  return dormer;
+}
+
+}  // namespace
+
+std::vector<Hollow> dormers_on(const std::vector<Panel>& panels) {
+  const std::vector<Ledge> ledges = find_ledges(panels);
+  std::vector<Hollow> dormers;
+  for (const Ledge& l : ledges) {
+    const bool is_known = std::any_of(dormers.begin(), dormers.end(), [&](const Hollow& h) {
+      return std::find(h.planes.begin(), h.planes.end(), l.roof->id) != h.planes.end();
+    });
+    if (!is_known) dormers.push_back(make_dormer(panels, ledges, l));
+  }
+  return dormers;
+}
+
+}  // namespace colod::hollows

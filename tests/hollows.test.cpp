@@ -1,0 +1,105 @@
+#include "../src/hollows.h"
+
+#include <catch2/catch.hpp>
+
+#include "../src/extraction.h"
+#include "../src/segments.h"
+#include "hollows_helpers.h"
+
+using namespace colod;
+using namespace colod::test;
+
+namespace {
+
+std::vector<Hollow> hollows_of(const Planes& planes) {
+  return find_hollows(planes, all_planes(planes));
+}
+
+std::vector<Hollow> hollows_of(const Mesh& mesh) { return hollows_of(planes_of_mesh(mesh)); }
+
+Mesh without(Mesh mesh, const Vec3& a, const Vec3& b) {
+  std::erase_if(mesh.faces, [&](const Face& f) {
+    const Vec3 x = (mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3;
+    return (a.array() <= x.array()).all() && (x.array() <= b.array()).all();
+  });
+  return mesh;
+}
+
+PolygonMesh mesh_of(const Mesh& mesh) {
+  const Planes planes = planes_of_mesh(mesh);
+  Sight sight(planes);
+  const Extraction e = extract_layer(planes, all_planes(planes), sight);
+  CHECK(e.is_manifold);
+  return e.mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a plain house has no hollow, nor has one with a solid box on it") {
+  CHECK(hollows_of(plain_house()).empty());
+  CHECK(hollows_of(join(plain_house(), box_mesh({3, -1.2, 2.8}, {6, 0, 4}))).empty());
+  CHECK(hollows_of(join(plain_house(), box_mesh({2, 2, 7}, {3, 2.6, 8.5}))).empty());
+}
+
+TEST_CASE("a balcony is a tray of four planes with air in it") {
+  const auto found = hollows_of(balcony_house());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kTray);
+  CHECK(found[0].planes.size() == 4);
+  CHECK(contains(found[0].air, {4.5, -0.6, 3.5}));
+  for (const Vec3& x : {Vec3(4.5, -0.6, 4.5), Vec3(4.5, -0.6, 2.9), Vec3(4.5, -1.15, 3.5),
+                        Vec3(4.5, 0.5, 3.5), Vec3(2, -0.6, 3.5)})
+    CHECK_FALSE(contains(found[0].air, x));
+  CHECK(found[0].sheets.size() == 3);
+}
+
+TEST_CASE("a balcony needs its floor and a corner of walls, whatever way it looks") {
+  CHECK(hollows_of(without(balcony_house(), {3, -1.2, 3}, {6, 0, 3})).empty());
+  CHECK(hollows_of(without(balcony_house(), {6, -2, 2}, {6, 0, 4})).size() == 1);
+  Mesh turned = balcony_house();
+  for (Vec3& v : turned.vertices) v = Vec3(-v.y(), v.x(), v.z());
+  CHECK(hollows_of(turned).size() == 1);
+}
+
+TEST_CASE("a loggia is a niche, the space between two bays is none") {
+  const auto found = hollows_of(loggia_house());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kNiche);
+  CHECK(found[0].planes.size() == 4);
+  CHECK(contains(found[0].air, {4.5, 0.7, 4}));
+  CHECK_FALSE(contains(found[0].air, {4.5, 0.7, 2.5}));
+  const Mesh bays =
+      join(join(plain_house(), box_mesh({1, -1, 1}, {3, 0, 4})), box_mesh({6, -1, 1}, {8, 0, 4}));
+  CHECK(hollows_of(bays).empty());
+}
+
+TEST_CASE("a chimney without its top is a shaft") {
+  const auto found = hollows_of(chimney_house());
+  REQUIRE_FALSE(found.empty());
+  for (const Hollow& h : found) CHECK(h.kind == Hollow::Kind::kShaft);
+}
+
+TEST_CASE("what a scan misses of them stands in the mesh") {
+  const double house = 560;
+  CHECK(signed_volume(mesh_of(balcony_house()).mesh()) ==
+        Approx(house + 3 * 1.2 * 0.2 + 0.12 * (3 + 2 * 1.08)).margin(0.05));
+  CHECK(signed_volume(mesh_of(loggia_house()).mesh()) ==
+        Approx(house - 3 * 1.5 * 2.3).margin(0.05));
+  CHECK(signed_volume(mesh_of(chimney_house()).mesh()) ==
+        Approx(house + 27 + 1 * 0.6 * 1.5).margin(0.05));
+}
+
+TEST_CASE("trays and niches are segments of their own, whole") {
+  for (const bool is_loggia : {false, true}) {
+    const Planes planes = planes_of_mesh(is_loggia ? loggia_house() : balcony_house());
+    SegmentOptions options;
+    options.visibility.ns = 40;
+    const Segments s = build_segments(planes, options);
+    const Form form = is_loggia ? Form::kNiche : Form::kTray;
+    const auto own = std::find_if(s.segments.begin(), s.segments.end(),
+                                  [&](const Segment& g) { return g.form == form; });
+    REQUIRE(own != s.segments.end());
+    CHECK(own->planes == hollows_of(planes)[0].planes);
+    CHECK(own->is_alcove == is_loggia);
+  }
+}

@@ -1,0 +1,55 @@
+// Houses as a scan shows them: with a balcony, a loggia or a chimney some of whose faces are
+// missing.
+#pragma once
+
+#include "extraction_helpers.h"
+
+namespace colod::test {
+
+/// a, b, c, d counter-clockwise seen from outside.
+inline void add_quad(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
+  mesh.faces.push_back({first, first + 1, first + 2});
+  mesh.faces.push_back({first, first + 2, first + 3});
+}
+
+/// 10 × 8 × 7, its front at y = 0 looking to −y.
+inline Mesh plain_house() { return box_mesh({0, 0, 0}, {10, 8, 7}); }
+
+/// The outer faces and the floor of a balcony on that front: 3 × 1.2, rail at z = 4.
+inline Mesh balcony_house() {
+  Mesh m = plain_house();
+  add_quad(m, {3, -1.2, 3}, {6, -1.2, 3}, {6, 0, 3}, {3, 0, 3});
+  add_quad(m, {3, -1.2, 2.8}, {6, -1.2, 2.8}, {6, -1.2, 4}, {3, -1.2, 4});
+  add_quad(m, {3, 0, 2.8}, {3, -1.2, 2.8}, {3, -1.2, 4}, {3, 0, 4});
+  add_quad(m, {6, -1.2, 2.8}, {6, 0, 2.8}, {6, 0, 4}, {6, -1.2, 4});
+  return m;
+}
+
+/// A loggia in that front, 3 wide, 1.5 deep, from z = 3 to 5.3, its floor not seen.
+inline Mesh loggia_house() {
+  Mesh m = plain_house();
+  std::erase_if(m.faces, [&](const Face& f) { return face_cross(m, f).normalized().y() < -0.9; });
+  add_quad(m, {0, 0, 0}, {3, 0, 0}, {3, 0, 7}, {0, 0, 7});
+  add_quad(m, {6, 0, 0}, {10, 0, 0}, {10, 0, 7}, {6, 0, 7});
+  add_quad(m, {3, 0, 0}, {6, 0, 0}, {6, 0, 3}, {3, 0, 3});
+  add_quad(m, {3, 0, 5.3}, {6, 0, 5.3}, {6, 0, 7}, {3, 0, 7});
+  add_quad(m, {3, 0, 3}, {3, 1.5, 3}, {3, 1.5, 5.3}, {3, 0, 5.3});
+  add_quad(m, {6, 1.5, 3}, {6, 0, 3}, {6, 0, 5.3}, {6, 1.5, 5.3});
+  add_quad(m, {3, 1.5, 3}, {6, 1.5, 3}, {6, 1.5, 5.3}, {3, 1.5, 5.3});
+  add_quad(m, {3, 0, 5.3}, {3, 1.5, 5.3}, {6, 1.5, 5.3}, {6, 0, 5.3});
+  return m;
+}
+
+/// A chimney of 1 × 0.6 × 1.5 on the flat roof, without its top; with another part that is higher.
+inline Mesh chimney_house() {
+  Mesh m = join(plain_house(), box_mesh({7, 5, 7}, {10, 8, 10}));
+  add_quad(m, {2, 2, 7}, {3, 2, 7}, {3, 2, 8.5}, {2, 2, 8.5});
+  add_quad(m, {3, 2.6, 7}, {2, 2.6, 7}, {2, 2.6, 8.5}, {3, 2.6, 8.5});
+  add_quad(m, {2, 2.6, 7}, {2, 2, 7}, {2, 2, 8.5}, {2, 2.6, 8.5});
+  add_quad(m, {3, 2, 7}, {3, 2.6, 7}, {3, 2.6, 8.5}, {3, 2, 8.5});
+  return m;
+}
+
+}  // namespace colod::test
