@@ -9,6 +9,31 @@ function(colod_library name)
   target_link_libraries(colod_${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE} colod_flags)
 endfunction()
 
+# A page as a C++ text: `colod_page(out header symbol page.html style.css script.js...)` makes a source that defines `symbol`
+# (declared in `header`), the HTML with styles and scripts where it says @STYLE@ and @SCRIPT@, and puts its path into `out`.
+function(colod_page out header symbol html css)
+  foreach(file ${html} ${css} ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
+  endforeach()
+  set(script "")
+  foreach(file ${ARGN})
+    file(READ ${CMAKE_SOURCE_DIR}/${file} text)
+    string(APPEND script "${text}")
+  endforeach()
+  file(READ ${CMAKE_SOURCE_DIR}/${css} style)
+  file(READ ${CMAKE_SOURCE_DIR}/${html} page)
+  string(REPLACE "@STYLE@" "${style}" page "${page}")
+  string(REPLACE "@SCRIPT@" "${script}" page "${page}")
+  set(source ${CMAKE_BINARY_DIR}/generated/${symbol}.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [=[// Made by CMake.
+#include "@header@"
+namespace colod {
+const std::string_view @symbol@ = R"~page~(@page@)~page~";
+}  // namespace colod
+]=])
+  set(${out} ${source} PARENT_SCOPE)
+endfunction()
+
 # Flags that every target of ours is built with.
 add_library(colod_flags INTERFACE)
 target_compile_options(colod_flags INTERFACE -Wall -Wextra -Wshadow $<$<BOOL:${COLOD_WERROR}>:-Werror>)

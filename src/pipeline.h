@@ -33,7 +33,7 @@ struct Layer {
 /// Seconds of wall clock per stage; buildings overlap when several threads run.
 struct Timings {
   double read = 0, planes = 0, visibility = 0, segments = 0, similarity = 0, extraction = 0,
-         measure = 0, export_ = 0;
+         measure = 0, pictures = 0, export_ = 0;
 };
 
 /// What the report says of data that may have been let go.

@@ -6,15 +6,12 @@
 // Notation: a sample is a quarter of a pixel; right, up, forward are the camera's axes.
 #include "preview.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 
-#include "error.h"
 #include "parallel.h"
 #include "rays.h"
 
@@ -23,7 +20,7 @@ namespace {
 
 constexpr int kSamples = 2;       ///< a pixel's side, in samples
 constexpr double kMargin = 1.06;  ///< the frame is this much larger than the box
-constexpr Color kBackground{250, 250, 250}, kLightGrey{205, 205, 200}, kBackFace{150, 25, 25};
+constexpr Color kLightGrey{205, 205, 200}, kBackFace{150, 25, 25};
 constexpr double kInk = 0.25;        ///< how bright a line is
 constexpr double kCrease_deg = 25;   ///< two faces without facets are told apart from here on
 constexpr double kDepthStep = 0.01;  ///< of the box's diagonal: a line between surfaces
@@ -315,21 +312,6 @@ Image contact_sheet(const std::vector<Image>& images, const std::vector<std::str
     draw_text(sheet, x, y + height + 3, caption, own);
   }
   return sheet;
-}
-
-std::string encode_png(const Image& image) {
-  assert(image.rgb.size() == static_cast<std::size_t>(image.width) * image.height * 3);
-  png_image header{};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = static_cast<png_uint_32>(image.width);
-  header.height = static_cast<png_uint_32>(image.height);
-  header.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
-  std::string bytes(size, '\0');
-  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))
-    throw Error(Stage::kOutput, "picture", header.message);
-  bytes.resize(size);
-  return bytes;
 }
 
 Color palette(int id) {

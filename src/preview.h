@@ -17,6 +17,7 @@ struct Image {
 };
 
 using Color = std::array<std::uint8_t, 3>;
+inline constexpr Color kBackground{250, 250, 250};  ///< of every picture
 
 struct PreviewOptions {
   int width = 480, height = 360;
@@ -39,6 +40,9 @@ Image contact_sheet(const std::vector<Image>& images, const std::vector<std::str
                     int columns);
 /// PNG bytes.
 std::string encode_png(const Image& image);
+/// PNG bytes for a page that holds many: at most 64 colours, the background transparent. While they
+/// are more than `most`, colours are given up and then pixels, down to 16 a side.
+std::string encode_small_png(const Image& image, std::size_t most);
 /// A colour for each id, well apart for neighbouring ids.
 Color palette(int id);
 

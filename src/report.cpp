@@ -63,6 +63,7 @@ Json building_json(const Building& b, bool has_prior) {
                      {"similarity", b.timings.similarity},
                      {"extraction", b.timings.extraction},
                      {"measure", b.timings.measure},
+                     {"pictures", b.timings.pictures},
                      {"export", b.timings.export_}};
   json["warnings"] = b.warnings;
   if (!b.failure.empty()) json["failure"] = b.failure;

@@ -68,7 +68,7 @@ bool is_same(const fs::path& a, const fs::path& b) {
   std::map<std::string, std::string> files[2];
   for (const int side : {0, 1})
     for (const auto& entry : fs::recursive_directory_iterator(side == 0 ? a : b))
-      if (entry.is_regular_file() && entry.path().filename() != "report.json")
+      if (entry.is_regular_file() && entry.path().stem() != "report")
         files[side][fs::relative(entry.path(), side == 0 ? a : b).string()] = slurp(entry.path());
   return !files[0].empty() && files[0] == files[1];
 }

@@ -162,3 +162,18 @@ TEST_CASE("neighbouring colours differ, and so do the first two dozen") {
     CHECK(std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 80);
   }
 }
+
+TEST_CASE("a small PNG keeps to its size and its background is transparent") {
+  const Image image =
+      render_preview(test::sphere_mesh(4), {.width = 200, .height = 150, .box = {}});
+  const std::string whole = encode_png(image), small = encode_small_png(image, 100000);
+  CHECK(small.size() < whole.size());
+  CHECK(small.find("PLTE") != small.npos);
+  CHECK(small.find("tRNS") != small.npos);
+  for (const std::size_t most : {6000, 2000, 700}) {
+    const std::string bytes = encode_small_png(image, most);
+    CHECK(bytes.size() <= most);
+    CHECK(bytes.starts_with("\x89PNG"));
+  }
+  CHECK(encode_small_png(Image{1, 1, {1, 2, 3}}, 1).starts_with("\x89PNG"));
+}

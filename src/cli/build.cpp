@@ -6,6 +6,7 @@
 #include "../../exporters/files.h"
 #include "../parallel.h"
 #include "../pipeline.h"
+#include "../report_pictures.h"
 #include "../store.h"
 #include "cli.h"
 #include "input_options.h"
@@ -74,16 +75,18 @@ int build(const BuildArguments& a) {
   const std::optional<Prior> prior = read_prior(a.prior);
   const Inventory inventory = take_inventory(a.inputs, a.read);
   make_folder(a.output.out);  // fails now rather than after all the work
-  TemporaryStore depot;
-  Judge judge(truth, depot);
+  TemporaryStore store;
+  Judge judge(truth, store);
+  Depot& judged = truth.empty() ? static_cast<Depot&>(store) : judge;
+  Gallery gallery(inventory.building_count(), a.options.layers, judged);
   Scene scene = build_scene(
       inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
-      a.options, truth.empty() ? static_cast<Depot&>(depot) : judge,
+      a.options, a.output.has_no_page ? judged : gallery,
       [&](auto&&... args) { log.progress(args...); }, prior ? &*prior : nullptr);
   if (!truth.empty()) scene.consistency = tally_parts(judge.parts(), a.options.layers);
   export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, a.options, seconds.count(), a.output, log);
+  return finish(scene, a.options, seconds.count(), gallery.take(scene), a.output, log);
 }
 
 }  // namespace

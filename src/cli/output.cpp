@@ -11,12 +11,15 @@
 #include "../../exporters/engine.h"
 #include "../../exporters/files.h"
 #include "../../exporters/glb.h"
+#include "../../exporters/html_report.h"
 #include "../../exporters/obj.h"
 #include "../../exporters/tiles3d.h"
 #include "../error.h"
 #include "../georeference.h"
 #include "../parallel.h"
 #include "../report.h"
+#include "../report_parts.h"
+#include "../report_pictures.h"
 #include "../stopwatch.h"
 
 namespace colod::cli {
@@ -71,6 +74,18 @@ Placement place(const Scene& scene, const OutputArguments& a, const Vec3& probe,
   return {map.to_ecef, map.name};
 }
 
+void write_page(const Scene& scene, const Options& options, const std::string& report,
+                Pictures pictures, const OutputArguments& a) {
+  HtmlReport page{report, parts_json(scene, options), std::move(pictures), {}};
+  for (int layer = 0; layer < options.layers; ++layer) {
+    const Color c = layer_color(layer);
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", c[0], c[1], c[2]);
+    page.layer_colors.push_back(text);
+  }
+  write_file(a.out, encode_html_report(page));
+}
+
 }  // namespace
 
 void add_output_options(CLI::App& app, OutputArguments& a) {
@@ -105,6 +120,8 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
   app.add_option("--pixel-error", a.pixel_error,
                  "how many pixels a layer may be wrong when it is shown, default 2")
       ->check(CLI::Range(0.01, 1e4));
+  app.add_flag("--no-report-html", a.has_no_page,
+               "report.json only, no report.html and no pictures for it");
 }
 
 void export_scene(Scene& scene, const OutputArguments& a, const Log& log) {
@@ -164,9 +181,11 @@ int exit_code(const Scene& scene) {
   return static_cast<int>(scene.buildings.empty() ? Stage::kInput : Stage::kProcess);
 }
 
-int finish(const Scene& scene, const Options& options, double seconds, const OutputArguments& a,
-           const Log& log) {
-  write_file(a.out, {"report.json", report_json(scene, options, {seconds, peak_memory_bytes()})});
+int finish(const Scene& scene, const Options& options, double seconds, Pictures pictures,
+           const OutputArguments& a, const Log& log) {
+  const std::string report = report_json(scene, options, {seconds, peak_memory_bytes()});
+  if (!a.has_no_page) write_page(scene, options, report, std::move(pictures), a);
+  write_file(a.out, {"report.json", report});
   report_problems(scene, log);
   const auto done = std::count_if(scene.buildings.begin(), scene.buildings.end(),
                                   [](const Building& b) { return b.failure.empty(); });

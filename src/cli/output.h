@@ -16,12 +16,16 @@ struct OutputArguments {
   std::vector<std::string> formats = {"glb", "3dtiles"};
   Compression compression = Compression::kDraco;
   double quantization = 0.01, target_sse = 16, pixel_error = 2;
-  std::string crs, origin;  ///< empty: what lies beside the sources says
+  std::string crs, origin;   ///< empty: what lies beside the sources says
+  bool has_no_page = false;  ///< no report.html
 };
+
+/// Per building of the scene, PNGs (report_pictures.h).
+using Pictures = std::vector<std::vector<std::string>>;
 
 void add_output_options(CLI::App& app, OutputArguments& a);
 
-/// Everything but report.json; says where on Earth the tileset is, if anywhere; notes the seconds
+/// Everything but the report; says where on Earth the tileset is, if anywhere; notes the seconds
 /// in each building's timings. Throws Error{kOutput}.
 void export_scene(Scene& scene, const OutputArguments& a, const Log& log);
 
@@ -31,8 +35,8 @@ void report_problems(const Scene& scene, const Log& log);
 /// 0, 1, or 3 and 4 when nothing could be read or made.
 int exit_code(const Scene& scene);
 
-/// Writes report.json, says what failed and what was done; returns the exit code.
-int finish(const Scene& scene, const Options& options, double seconds, const OutputArguments& a,
-           const Log& log);
+/// Writes report.html and report.json, says what failed and what was done; returns the exit code.
+int finish(const Scene& scene, const Options& options, double seconds, Pictures pictures,
+           const OutputArguments& a, const Log& log);
 
 }  // namespace colod::cli

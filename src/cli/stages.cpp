@@ -11,6 +11,7 @@
 #include "../error.h"
 #include "../parallel.h"
 #include "../pipeline.h"
+#include "../report_pictures.h"
 #include "../store.h"
 #include "cli.h"
 #include "input_options.h"
@@ -159,6 +160,26 @@ int mesh(const StageArguments& a) {
   return exit_code(problems);
 }
 
+/// Each building's source is read again, drawn and let go in its turn.
+Pictures draw(Scene& scene, std::vector<Store>& stores, const std::vector<std::size_t>& file_of,
+              int layers) {
+  Depot memory;
+  Gallery gallery(scene.buildings.size(), layers, memory);
+  std::mutex mutex;
+  parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    Building& b = scene.buildings[i];
+    {
+      const std::lock_guard lock(mutex);
+      Building kept = stores[file_of[i]].building(b.source.name);
+      b.source.mesh = std::move(kept.source.mesh);
+      b.source.cloud = std::move(kept.source.cloud);
+    }
+    gallery.drop(b);
+    drop_geometry(b);
+  });
+  return gallery.take(scene);
+}
+
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
   limit_threads(a.run.threads);
@@ -169,9 +190,12 @@ int export_files(const StageArguments& a) {
   stores.front().get_coanalysis(scene);
   check_exportable(scene);
   make_folder(a.output.out);
+  const Options options = stores.front().options();
+  Pictures pictures;
+  if (!a.output.has_no_page) pictures = draw(scene, stores, file_of, options.layers);
   export_scene(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, stores.front().options(), seconds.count(), a.output, log);
+  return finish(scene, options, seconds.count(), std::move(pictures), a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {

@@ -1,0 +1,9 @@
+// All of the page, top to bottom.
+document.title = `colod report: ${count(buildings.length, 'building')}`;
+showOverview();
+showProblems();
+const drawPlots = showPlots(), drawPictures = showPictures();
+showTable((list, limit) => { drawPlots(list); drawPictures(list, limit); });
+showCoanalysis();
+showTime();
+showParameters();

@@ -1,0 +1,181 @@
+// Overview, problems, the sortable table and the pictures.
+
+function showOverview() {
+  const failed = buildings.filter((b) => b.isFailed).length + report.failures.length;
+  const total = buildings.length + report.failures.length;
+  const made = buildings.flatMap((b) => b.own.filter((l) => l && !l.failure));
+  const closed = made.filter((l) => l.watertight).length;
+  const finest = buildings.map((b) => b.own[layerCount - 1]).filter((l) => l && !l.failure);
+  const source = sum(buildings.map((b) => b.size)), fine = sum(finest.map((l) => l.faces));
+  const coarse = sum(buildings.map((b) => b.own[0]?.faces));
+  const errors = finest.map((l) => l.hausdorff);
+  const figure = (label, value, note, state) => make('div', { class: 'figure' }, make('span', { class: 'label' }, label),
+    make('b', { class: state }, value), make('small', {}, note));
+  const units = new Set(buildings.map((b) => b.unit));
+  section('overview').append(
+    figure('Buildings', whole(total), failed ? `${whole(failed)} failed` : 'all complete', failed ? 'bad' : undefined),
+    figure(units.size > 1 ? 'Source faces or points' : `Source ${[...units][0] ?? 'faces'}`, large(source),
+      `${whole(report.coanalysis.segments)} segments of ${whole(sum(buildings.map((b) => b.planes)))} planes`),
+    figure('Faces of the finest layer', large(fine), `${percent(source ? fine / source : undefined, 1)} of the source; coarsest ${large(coarse)}`),
+    figure('Watertight layers', `${whole(closed)} / ${whole(made.length)}`, `${count(layerCount, 'layer')} a building`, closed < made.length ? 'bad' : 'good'),
+    figure('Error, finest layer', `${metres(median(errors))} m`, `median; largest ${metres(errors.length ? Math.max(...errors) : undefined)} m`),
+    figure('Run', seconds(report.totals.seconds), `${bytes(report.totals.peak_memory_bytes)} of memory at most`));
+}
+
+function showProblems() {
+  const failures = [
+    ...report.failures.map((f) => [f.source, f.message]),
+    ...buildings.filter((b) => b.failure).map((b) => [b.name, b.failure]),
+    ...buildings.flatMap((b) => b.own.filter((l) => l?.failure).map((l) => [`${b.name}, layer ${l.layer}`, l.failure]))];
+  const warnings = [...report.coanalysis.warnings.map((w) => ['Co-analysis', w]),
+    ...buildings.flatMap((b) => b.warnings.map((w) => [b.name, w]))];
+  const list = (items) => make('ul', {}, ...items.map(([name, text]) =>
+    make('li', {}, make('b', {}, name), text.startsWith(`${name}: `) ? text.slice(name.length) : `: ${text}`)));
+  const box = section('problems');
+  if (failures.length) {
+    box.classList.add('has-failures');
+    box.append(make('h2', { class: 'bad' }, count(failures.length, 'failure')), list(failures.slice(0, 200)));
+    if (failures.length > 200) box.append(make('p', {}, `and ${failures.length - 200} more: see report.json`));
+  }
+  if (warnings.length) box.append(make('details', {}, make('summary', {}, count(warnings.length, 'warning')), list(warnings.slice(0, 500))));
+}
+
+/** Columns of the table: a title, a key to sort by (undefined goes last), and what stands in the cell. */
+function columns() {
+  const own = [
+    { title: 'Building', key: (b) => b.name, cell: (b) => make('a', { href: `#b${b.index}`, title: b.source }, b.name) },
+    { title: 'Source faces', key: (b) => b.size, cell: (b) => `${whole(b.size)}${b.faces ? '' : ' pts'}` },
+    { title: 'Planes', key: (b) => b.planes, cell: (b) => whole(b.planes) },
+    { title: 'Segments', key: (b) => b.segments, cell: (b) => whole(b.segments) },
+    { title: 'Warnings', key: (b) => b.warnings.length, cell: (b) => (b.warnings.length ? make('span', { class: 'warn' }, whole(b.warnings.length)) : '0') }];
+  const ofLayer = (title, value, write, help) => (k) => ({ title, help, layer: k,
+    key: (b) => (b.own[k] && !b.own[k].failure ? value(b.own[k]) : undefined),
+    cell: (b) => (b.own[k] && !b.own[k].failure ? write(value(b.own[k]), b.own[k]) : none) });
+  const state = (isClosed, l) => make('span', isClosed ? { class: 'good' } : { class: 'bad' },
+    isClosed ? 'yes' : 'NO', l.self_intersections ? ` (${l.self_intersections} ×)` : '');
+  const each = [ofLayer('Faces', (l) => l.faces, whole, 'triangles'), ofLayer('Polygons', (l) => l.polygons, whole, 'planar facets'),
+    ofLayer('Error m', (l) => l.hausdorff, metres, 'largest distance from the source to the layer, metres'),
+    ofLayer('Mean m', (l) => l.mean_distance, metres, 'mean distance from the source to the layer, metres'),
+    ofLayer('Closed', (l) => Number(l.watertight), state, 'watertight; in brackets, intersecting pairs of faces')];
+  return [...own, ...layers.flatMap((k) => each.map((column) => column(k)))];
+}
+
+const names = new Intl.Collator('en', { numeric: true });
+function compareKeys(a, b, direction) {
+  if (a === undefined || b === undefined) return (a === undefined) - (b === undefined);
+  return direction * (typeof a === 'string' ? names.compare(a, b) : a - b);
+}
+
+const filters = { all: () => true, failed: (b) => b.isFailed, warned: (b) => b.warnings.length > 0, open: (b) => b.isOpen };
+const mostRows = 1000;
+
+/** Calls `follow` with the buildings that pass the filter, in the table's order, and with how many of them are shown. */
+function showTable(follow) {
+  const all = columns(), body = make('tbody');
+  const heads = all.map((column, i) => make('th', { scope: 'col', title: column.help,
+    class: column.layer !== undefined && column.title === 'Faces' ? 'first' : undefined, onclick: () => sort(i) }, make('button', { type: 'button' }, column.title)));
+  const groups = make('tr', {}, make('th', { colspan: all.length - 5 * layerCount }),
+    ...layers.map((k) => make('th', { colspan: 5, class: 'group', scope: 'colgroup' }, make('span', { class: 'swatch', style: { '--c': colorOf(k) } }), layerName(k))));
+  const rows = [];
+  let sorted = 0, direction = 1, limit = mostRows;
+  const search = make('input', { type: 'search', placeholder: 'Filter by name', 'aria-label': 'Filter by name', oninput: () => update() });
+  const filter = make('select', { 'aria-label': 'Which buildings', onchange: () => update() },
+    ...[['all', 'All buildings'], ['failed', 'Failed'], ['warned', 'With warnings'], ['open', 'Not watertight']]
+      .map(([value, text]) => make('option', { value }, `${text} (${whole(buildings.filter(filters[value]).length)})`)));
+  const more = make('button', { type: 'button', class: 'plain', hidden: true, onclick: () => { limit = Infinity; update(); } }, 'Show all');
+  const shown = make('span', { class: 'soft' });
+
+  function sort(i) {
+    direction = i === sorted ? -direction : all[i].title === 'Building' ? 1 : -1;
+    sorted = i;
+    update();
+  }
+  function update() {
+    heads.forEach((head, i) => (i === sorted ? head.setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending') : head.removeAttribute('aria-sort')));
+    const text = search.value.toLowerCase();
+    const list = buildings.filter((b) => filters[filter.value](b) && b.name.toLowerCase().includes(text));
+    const { key } = all[sorted];
+    list.sort((a, b) => compareKeys(key(a), key(b), direction) || a.index - b.index);
+    body.replaceChildren(...list.slice(0, limit).map((b) => (rows[b.index] ??= rowOf(b, all))));
+    more.hidden = list.length <= limit;
+    shown.textContent = list.length < buildings.length || list.length > limit ? `${whole(Math.min(list.length, limit))} of ${whole(buildings.length)} shown` : '';
+    follow(list, limit);
+  }
+  section('buildings').append(make('div', { class: 'tools' }, search, filter, shown, more),
+    make('div', { class: 'wide', tabindex: 0 }, make('table', { id: 'table' }, make('thead', {}, groups, make('tr', {}, ...heads)), body)),
+    make('p', { class: 'note' }, 'Click a heading to sort; plots and pictures follow. Error: largest distance in metres from the source to the layer. Layer 0 is the coarsest.'));
+  update();
+}
+
+function rowOf(b, all) {
+  const cells = all.slice(1).map((column) => [column, column.cell(b)]);
+  const row = make('tr', { class: b.isFailed ? 'failed' : undefined }, make('th', { scope: 'row' }, all[0].cell(b), b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed')));
+  if (b.failure) {  // the reason stands where the layers would
+    row.append(...cells.filter(([c]) => c.layer === undefined).map(([, content]) => make('td', {}, content)),
+      make('td', { class: 'why first', colspan: 5 * layerCount }, b.failure));
+    return row;
+  }
+  for (let i = 0; i < cells.length; ++i) {
+    const [column, content] = cells[i], isFirst = column.layer !== undefined && column.title === 'Faces';
+    const failure = isFirst && b.own[column.layer]?.failure;
+    row.append(failure ? make('td', { class: 'why first', colspan: 5 }, failure) : make('td', { class: isFirst ? 'first' : undefined }, content));
+    if (failure) i += 4;
+  }
+  return row;
+}
+
+/** Width in pixels, from the header of a PNG in a data address. */
+function widthOf(picture) {
+  const header = atob(picture.slice(picture.indexOf(',') + 1).slice(0, 32));
+  return header.charCodeAt(18) * 256 + header.charCodeAt(19);
+}
+
+/** Pictures are given to the browser when they come near: a page of thousands opens at once. */
+const loader = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries)
+    if (isIntersecting) loadPictures(target);
+}, { rootMargin: '1000px' });
+
+function loadPictures(card) {
+  loader.unobserve(card);
+  for (const image of card.querySelectorAll('img:not([src])'))
+    image.src = pictures[Number(image.dataset.building)][Number(image.dataset.picture)];
+}
+
+function cardOf(b) {
+  const own = pictures[b.index] ?? [];
+  const picture = (i, title, note, failure) => make('figure', {}, own[i]
+    ? make('img', { alt: `${b.name}, ${title}`, loading: 'lazy', decoding: 'async', 'data-building': b.index, 'data-picture': i })
+    : make('div', { class: failure ? 'none' : 'none calm' }, failure ? 'no mesh' : 'no picture'), make('figcaption', {}, make('b', {}, title), ' ', note));
+  const strip = [picture(0, 'Source', `${whole(b.size)} ${b.unit}`, false),
+    ...b.own.map((l, k) => picture(k + 1, `Layer ${k}`, l && !l.failure ? `${whole(l.faces)} faces, ${metres(l.hausdorff)} m` : 'failed', !l || l.failure))];
+  const card = make('article', { class: b.isFailed ? 'card failed' : 'card', id: `b${b.index}` },
+    make('h3', {}, b.name, b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed'),
+      make('span', { class: 'soft' }, `${count(b.planes, 'plane')}, ${count(b.segments, 'segment')}`)),
+    ...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
+    make('div', { class: 'strip' }, ...strip),
+    b.warnings.length > 0 && make('details', {}, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
+  loader.observe(card);
+  return card;
+}
+
+/** Returns a function that shows the first `limit` of the given buildings, in their order. */
+function showPictures() {
+  const box = section('pictures');
+  const some = pictures.flat().filter(Boolean);
+  if (!some.length) {
+    box.remove();
+    return () => {};
+  }
+  const width = Math.min(320, Math.max(...some.slice(0, 20).map(widthOf)));
+  const card = (layerCount + 1) * (Math.max(width, 96) + 8) + 24, withPictures = pictures.filter((own) => own.length).length;
+  const cards = make('div', { class: 'cards', style: { '--columns': layerCount + 1, '--card': `${card}px`, '--tall': `${Math.round(width * 0.75) + 80}px` } });
+  const swatch = (color, text) => make('span', {}, make('span', { class: 'swatch', style: { '--c': color } }), text);
+  box.append(make('p', { class: 'soft' }, 'Each building through one camera, from where its source shows most. Surfaces have the colour of the layer on which their part appears; dark red: seen from behind.'),
+    make('div', { class: 'legend' }, ...layers.map((k) => swatch(colorOf(k), `appears on layer ${k}`)), swatch('#bcbec0', 'of no segment (base, closures)')));
+  if (withPictures < buildings.length) box.append(make('p', { class: 'note' }, `${whole(withPictures)} of ${whole(buildings.length)} buildings have pictures.`));
+  box.append(cards);
+  const all = [];
+  addEventListener('beforeprint', () => all.forEach(loadPictures));
+  return (list, limit) => cards.replaceChildren(...list.slice(0, limit).map((b) => (all[b.index] ??= cardOf(b))));
+}
