@@ -24,7 +24,9 @@
 namespace colod {
 namespace {
 
-constexpr double kShortest = 1e-3;  // metres: shorter edges are contracted
+constexpr double kShortest = 3e-3;       // metres: shorter edges are contracted …
+constexpr double kShortestPaper = 1e-3;  // … under the paper's rules
+constexpr double kNarrowest = 1.2e-3;    // metres: edges of narrower facets likewise
 constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};
 constexpr double kEnough = 0.6;         // share of the outlines on the surface that ends the search
 constexpr double kWorthwhile = 0.1;     // share that another trial must add
@@ -130,17 +132,9 @@ std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<Ho
   std::vector<double> total(explained.size(), 0);
   for (const PolygonMesh::Facet& facet : attempt.mesh.facets) {
     if (facet.plane < 0) continue;
-    double perimeter = 0, area = 0;
-    for (const std::vector<int>& ring : facet.rings)
-      for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vec3 &a = attempt.mesh.vertices[ring[i]],
-                   &b = attempt.mesh.vertices[ring[(i + 1) % ring.size()]],
-                   &o = attempt.mesh.vertices[facet.rings[0][0]];
-        perimeter += (b - a).norm();
-        area += 0.5 * facet.normal.dot((a - o).cross(b - o));
-      }
-    total[facet.plane] += area;
-    is_wide[facet.plane] |= 2 * area > kSliver * perimeter;
+    const FacetSize size = measure_facet(attempt.mesh, facet);
+    total[facet.plane] += size.area;
+    is_wide[facet.plane] |= size.width() > kSliver;
   }
   for (std::size_t p = 0; p < is_wide.size(); ++p)
     is_wide[p] = is_wide[p] && explained[p] >= kLeastCovered * total[p];
@@ -238,7 +232,8 @@ PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_ins
   if (!keep_largest_components(partition, is_inside, least_share)) return {};
   if (!is_paper) fill_cavities(partition, is_inside);
   PolygonMesh mesh = build_surface(partition, BoundaryFinder(partition).find(is_inside));
-  contract_short_edges(mesh, kShortest);
+  contract_short_edges(mesh, is_paper ? kShortestPaper : kShortest);
+  if (!is_paper) contract_narrow_facets(mesh, kNarrowest);
   return mesh;
 }
 

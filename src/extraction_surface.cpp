@@ -1,7 +1,6 @@
 // Based on: "a vertex stays where at least three output planes meet" and constrained Delaunay
 // triangles for facets with holes, as in Sulzer & Lafarge, "Concise plane arrangements for
-// low-poly surface and volume modelling", ECCV 2024; edge contraction under the link condition of
-// Dey et al., "Topology preserving edge contraction", 1999.
+// low-poly surface and volume modelling", ECCV 2024.
 // Differs: the paper says nothing about how the surface between cells becomes polygons. Both rules
 // make it in the same way: whether a vertex stays is decided once for all facets, and the
 // triangulation is exact, on rational coordinates; doubles come at the very end.
@@ -18,8 +17,6 @@
 #include <map>
 #include <set>
 #include <tuple>
-
-#include "intersections.h"
 
 namespace colod {
 namespace {
@@ -259,152 +256,6 @@ void settle_diagonals(std::vector<MergedFacet>& facets, std::vector<Vec3>& point
   }
 }
 
-/// No triangle may turn by more than 60 degrees; the arguments are cross products of its sides.
-bool keeps_direction(const Vec3& before, const Vec3& after) {
-  return after.norm() > 0 && before.dot(after) > 0.5 * before.norm() * after.norm();
-}
-
-/// Contracts edges one at a time; knows which triangles use a vertex.
-class Contraction {
- public:
-  explicit Contraction(PolygonMesh& mesh) : mesh_(mesh), triangles_of_(mesh.vertices.size()) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      for (const int v : mesh.triangles[t]) triangles_of_[v].push_back(static_cast<int>(t));
-    is_gone_.assign(mesh.triangles.size(), 0);
-    target_.resize(mesh.vertices.size());
-    for (std::size_t v = 0; v < target_.size(); ++v) target_[v] = static_cast<int>(v);
-  }
-
-  /// Moves `from` onto `to` if that is allowed.
-  bool contract(int from, int to) {
-    std::vector<int> shared, moved;
-    for (const int t : triangles_of_[from]) (has(t, to) ? shared : moved).push_back(t);
-    if (shared.size() != 2 || link(from, to).size() != 2 || is_too_small(shared, from, to))
-      return false;
-    for (const int t : moved) {
-      const Face& f = mesh_.triangles[t];
-      Face g = f;
-      std::replace(g.begin(), g.end(), from, to);
-      if (!keeps_direction(cross(f), cross(g)) || meets_another(g, shared, moved)) return false;
-    }
-    for (const int t : shared) {
-      is_gone_[t] = 1;
-      for (const int v : mesh_.triangles[t]) std::erase(triangles_of_[v], t);
-    }
-    for (const int t : moved) {
-      std::replace(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), from, to);
-      triangles_of_[to].push_back(t);
-    }
-    triangles_of_[from].clear();
-    target_[from] = to;
-    return true;
-  }
-
-  /// Removes what was contracted from triangles, rings, facets and vertices.
-  void finish();
-
-  int facets_at(int v) const {
-    std::set<int> facets;
-    for (const int t : triangles_of_[v]) facets.insert(mesh_.facet_of_triangle[t]);
-    return static_cast<int>(facets.size());
-  }
-
- private:
-  Vec3 cross(const Face& f) const {
-    return (mesh_.vertices[f[1]] - mesh_.vertices[f[0]])
-        .cross(mesh_.vertices[f[2]] - mesh_.vertices[f[0]]);
-  }
-  /// A triangle that moves would cut one that stays.
-  bool meets_another(const Face& f, const std::vector<int>& shared,
-                     const std::vector<int>& moved) const {
-    const Box box = box_of(f);
-    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
-      const auto is_t = [t](int i) { return i == t; };
-      const Box other = box_of(mesh_.triangles[t]);
-      const bool is_near = !is_gone_[t] && (box.min.array() <= other.max.array()).all() &&
-                           (other.min.array() <= box.max.array()).all();
-      if (!is_near || std::any_of(shared.begin(), shared.end(), is_t) ||
-          std::any_of(moved.begin(), moved.end(), is_t) ||
-          is_degenerate(mesh_.vertices, mesh_.triangles[t]))
-        continue;
-      if (do_intersect(mesh_.vertices, f, mesh_.triangles[t])) return true;
-    }
-    return false;
-  }
-  Box box_of(const Face& f) const {
-    Box box;
-    for (const int v : f) box.extend(mesh_.vertices[v]);
-    return box;
-  }
-  bool has(int t, int v) const {
-    const Face& f = mesh_.triangles[t];
-    return std::find(f.begin(), f.end(), v) != f.end();
-  }
-  std::set<int> neighbours(int v) const {
-    std::set<int> around;
-    for (const int t : triangles_of_[v])
-      around.insert(mesh_.triangles[t].begin(), mesh_.triangles[t].end());
-    around.erase(v);
-    return around;
-  }
-  std::vector<int> link(int a, int b) const {
-    const std::set<int> at_a = neighbours(a), at_b = neighbours(b);
-    std::vector<int> both;
-    std::set_intersection(at_a.begin(), at_a.end(), at_b.begin(), at_b.end(),
-                          std::back_inserter(both));
-    return both;
-  }
-  /// A vertex would be left with two triangles, back to back.
-  bool is_too_small(const std::vector<int>& shared, int a, int b) const {
-    if (triangles_of_[a].size() + triangles_of_[b].size() < 7) return true;
-    for (const int t : shared)
-      for (const int v : mesh_.triangles[t])
-        if (v != a && v != b && triangles_of_[v].size() <= 3) return true;
-    return false;
-  }
-
-  PolygonMesh& mesh_;
-  std::vector<std::vector<int>> triangles_of_;
-  std::vector<char> is_gone_;
-  std::vector<int> target_;
-};
-
-void Contraction::finish() {
-  const auto resolve = [&](int v) {
-    while (target_[v] != v) v = target_[v];
-    return v;
-  };
-  PolygonMesh out;
-  std::vector<int> new_vertex(mesh_.vertices.size(), -1), new_facet(mesh_.facets.size(), -1);
-  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
-    if (target_[v] == static_cast<int>(v) && !triangles_of_[v].empty()) {
-      new_vertex[v] = static_cast<int>(out.vertices.size());
-      out.vertices.push_back(mesh_.vertices[v]);
-    }
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-    if (!is_gone_[t]) new_facet[mesh_.facet_of_triangle[t]] = 0;
-  for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
-    if (new_facet[f] < 0) continue;
-    PolygonMesh::Facet facet = mesh_.facets[f];
-    for (std::vector<int>& ring : facet.rings) {
-      for (int& v : ring) v = new_vertex[resolve(v)];
-      ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-      while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    }
-    std::erase_if(facet.rings, [](const std::vector<int>& ring) { return ring.size() < 3; });
-    new_facet[f] = static_cast<int>(out.facets.size());
-    out.facets.push_back(std::move(facet));
-  }
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    if (is_gone_[t]) continue;
-    Face f = mesh_.triangles[t];
-    for (int& v : f) v = new_vertex[v];
-    out.triangles.push_back(f);
-    out.facet_of_triangle.push_back(new_facet[mesh_.facet_of_triangle[t]]);
-  }
-  mesh_ = std::move(out);
-}
-
 }  // namespace
 
 PolygonMesh build_surface(const Partition& partition, const Boundary& boundary) {
@@ -437,32 +288,6 @@ PolygonMesh build_surface(const Partition& partition, const Boundary& boundary) 
     mesh.facets.push_back(std::move(facet));
   }
   return mesh;
-}
-
-int contract_short_edges(PolygonMesh& mesh, double length) {
-  constexpr int kPasses = 5;  // what one contraction forbids another may allow
-  int total = 0;
-  for (int pass = 0, count = 1; pass < kPasses && count > 0; ++pass, total += count) {
-    std::vector<std::tuple<double, int, int>> edges;
-    for (const Face& f : mesh.triangles)
-      for (int i = 0; i < 3; ++i) {
-        const int a = f[i], b = f[(i + 1) % 3];
-        const double d = (mesh.vertices[a] - mesh.vertices[b]).norm();
-        if (a < b && d < length) edges.emplace_back(d, a, b);
-      }
-    count = 0;
-    if (edges.empty()) break;
-    std::sort(edges.begin(), edges.end());
-    Contraction contraction(mesh);
-    for (const auto& [d, a, b] : edges) {
-      // The vertex with fewer planes moves, so that as few facets as possible bend.
-      const bool a_moves = contraction.facets_at(a) <= contraction.facets_at(b);
-      const int from = a_moves ? a : b, to = a_moves ? b : a;
-      count += contraction.contract(from, to) || contraction.contract(to, from);
-    }
-    contraction.finish();
-  }
-  return total;
 }
 
 }  // namespace colod

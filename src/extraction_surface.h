@@ -70,6 +70,17 @@ PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
 /// turns over and none comes to cut another; returns how many.
 int contract_short_edges(PolygonMesh& mesh, double length);
 
+struct FacetSize {
+  double area = 0;       ///< m²
+  double perimeter = 0;  ///< metres, holes included
+  double width() const { return perimeter > 0 ? 2 * area / perimeter : 0; }
+};
+FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet);
+
+/// The same for edges of facets narrower than `width` metres, up to 32 times as long: shorter ones
+/// first, and only while the facet stays narrow.
+int contract_narrow_facets(PolygonMesh& mesh, double width);
+
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest
 /// component, and unless to the letter substantial others, with cavities filled. Empty when no cell
 /// is inside. `mended_volume`, when asked for: m³ of the cells that were turned round.

@@ -91,6 +91,29 @@ Mesh read_plain_obj(const std::filesystem::path& path) {
   return mesh;
 }
 
+/// A box whose corner at (4, 4, 4) is cut off, `size` metres along each edge.
+PolygonMesh chipped_box(double size) {
+  PolygonMesh m;
+  m.vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
+  m.vertices[7].x() -= size;
+  m.vertices.insert(m.vertices.end(), {{4, 4 - size, 4}, {4, 4, 4 - size}});
+  for (const std::vector<int>& ring : {std::vector<int>{0, 2, 3, 1},
+                                       {4, 5, 8, 7, 6},
+                                       {0, 1, 5, 4},
+                                       {2, 6, 7, 9, 3},
+                                       {0, 4, 6, 2},
+                                       {1, 3, 9, 8, 5},
+                                       {7, 8, 9}}) {
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+      m.triangles.push_back({ring[0], ring[i], ring[i + 1]});
+      m.facet_of_triangle.push_back(static_cast<int>(m.facets.size()));
+    }
+    const Vec3 normal = face_cross(m.mesh(), m.triangles.back()).normalized();
+    m.facets.push_back({normal, -1, {ring}});
+  }
+  return m;
+}
+
 /// Extruded L: 10 × 10 without its upper right 6 × 6, 4 high.
 Mesh l_shape() {
   Mesh m;
@@ -421,4 +444,15 @@ TEST_CASE("turning cells saves facets within its limits and never turns forced c
   CHECK(saved({.facet_volume = 1, .depth = 0.3}, all_cells) == 3);  // the step is taken away
   CHECK(saved({.facet_volume = 1, .depth = 0.1}, nothing) == 0);
   CHECK(saved({.facet_volume = 0.01, .depth = 0.3}, nothing) == 0);
+}
+
+TEST_CASE("narrow facets are contracted where their short edges allow it") {
+  PolygonMesh mesh = chipped_box(0.005);
+  expect_solid(mesh, 64);
+  REQUIRE(mesh.facets.size() == 7);
+  CHECK(contract_narrow_facets(mesh, 0.001) == 0);
+  CHECK(contract_narrow_facets(mesh, 0.003) == 2);
+  CHECK(mesh.facets.size() == 6);
+  CHECK(is_closed_manifold(mesh.triangles));
+  for (const auto& facet : mesh.facets) CHECK(measure_facet(mesh, facet).width() > 1);
 }
