@@ -3,7 +3,7 @@
 // Based on: Decaudin: Cartoon-looking rendering of 3D-scenes, INRIA report 2919, 1996 (lines where
 //   neighbouring samples differ in surface or depth).
 // Differs: the same under both rules.
-// Notation: a sample is a quarter of a pixel; right, up, forward are the camera's axes.
+// Notation: a sample is one ray's part of a pixel; right, up, forward are the camera's axes.
 #include "preview.h"
 
 #include <algorithm>
@@ -18,7 +18,6 @@
 namespace colod {
 namespace {
 
-constexpr int kSamples = 2;       ///< a pixel's side, in samples
 constexpr double kMargin = 1.06;  ///< the frame is this much larger than the box
 constexpr Color kLightGrey{205, 205, 200}, kBackFace{150, 25, 25};
 constexpr double kInk = 0.25;        ///< how bright a line is
@@ -28,9 +27,11 @@ constexpr double kDepthStep = 0.01;  ///< of the box's diagonal: a line between 
 /// Orthographic; the same box and options give the same camera.
 struct Camera {
   Vec3 center, right, up, forward;
+  Vec3 light;       ///< unit, to the light: over the viewer's left shoulder
   double step = 1;  ///< metres a sample
   double diagonal = 1;
   int width = 0, height = 0;  ///< in samples
+  int samples = 1;            ///< a pixel's side
 
   Vec3 at(int x, int y) const {
     return center + step * ((x + 0.5 - 0.5 * width) * right + (0.5 * height - y - 0.5) * up);
@@ -44,8 +45,10 @@ Camera make_camera(const PreviewOptions& o, const Box& box) {
   c.right = {std::cos(az), std::sin(az), 0};
   c.forward = {-std::cos(el) * std::sin(az), std::cos(el) * std::cos(az), -std::sin(el)};
   c.up = c.right.cross(c.forward);
-  c.width = kSamples * o.width;
-  c.height = kSamples * o.height;
+  c.light = (-c.forward * 0.55 - c.right * 0.45 + Vec3::UnitZ() * 0.7).normalized();
+  c.samples = o.samples;
+  c.width = o.samples * o.width;
+  c.height = o.samples * o.height;
   if (box.is_empty()) {
     c.center = Vec3::Zero();
     return c;
@@ -58,10 +61,9 @@ Camera make_camera(const PreviewOptions& o, const Box& box) {
   return c;
 }
 
-/// Brightness of a surface: light over the viewer's left shoulder, and some from everywhere.
+/// Brightness of a surface: the light, and some from everywhere.
 double shade(const Vec3& normal, const Camera& c) {
-  const Vec3 light = (-c.forward * 0.55 - c.right * 0.45 + Vec3::UnitZ() * 0.7).normalized();
-  return 0.5 + 0.5 * std::max(0.0, normal.dot(light));
+  return 0.5 + 0.5 * std::max(0.0, normal.dot(c.light));
 }
 
 /// What one sample sees.
@@ -108,20 +110,62 @@ bool is_edge(const Sample& a, const Sample& b, const Vec3& axis, const Camera& c
   return std::abs(b.depth - by_a) > limit && std::abs(a.depth - by_b) > limit;
 }
 
-using Samples = std::vector<Sample>;
+/// Samples from (x0, y0) to (x1, y1), both ends included; empty when x0 > x1.
+struct Window {
+  int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
+};
+
+struct Samples {
+  std::vector<Sample> all;  ///< width × height, top row first
+  Window window;            ///< nothing is seen outside
+};
+
+/// Faces whose rectangle in the picture holds the middle of a sample, within a hundredth: of a fine
+/// scan that is less than half, and the others would cost as much to sort.
+std::vector<int> sampled_faces(const Mesh& mesh, const Camera& c, Window& window) {
+  std::vector<Vec2> at(mesh.vertices.size());  // in samples; whole numbers are their middles
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Vec3 p = (mesh.vertices[i] - c.center) / c.step;
+    at[i] = {p.dot(c.right) + 0.5 * c.width - 0.5, 0.5 * c.height - p.dot(c.up) - 0.5};
+  }
+  const Vec2 margin = Vec2::Constant(0.01), last(c.width - 1, c.height - 1);
+  window = {c.width, c.height, -1, -1};
+  std::vector<int> faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [i, j, k] = mesh.faces[f];
+    const Vec2 low = (at[i].cwiseMin(at[j]).cwiseMin(at[k]) - margin).cwiseMax(0.0);
+    const Vec2 high = (at[i].cwiseMax(at[j]).cwiseMax(at[k]) + margin).cwiseMin(last);
+    const double x0 = std::ceil(low.x()), y0 = std::ceil(low.y());
+    const double x1 = std::floor(high.x()), y1 = std::floor(high.y());
+    if (!(x0 <= x1 && y0 <= y1)) continue;  // or not a number
+    faces.push_back(static_cast<int>(f));
+    window.x0 = std::min(window.x0, static_cast<int>(x0));
+    window.y0 = std::min(window.y0, static_cast<int>(y0));
+    window.x1 = std::max(window.x1, static_cast<int>(x1));
+    window.y1 = std::max(window.y1, static_cast<int>(y1));
+  }
+  return faces;
+}
 
 Samples cast_samples(const Mesh& mesh, const Camera& c) {
-  Samples samples(static_cast<std::size_t>(c.width) * c.height);
-  const RayScene scene(mesh);
+  Samples samples{std::vector<Sample>(static_cast<std::size_t>(c.width) * c.height), {}};
+  const std::vector<int> sampled = sampled_faces(mesh, c, samples.window);
+  std::vector<Face> faces;
+  for (const int f : sampled) faces.push_back(mesh.faces[f]);
+  const RayScene scene(mesh.vertices, faces);
   const Box box = bounding_box(mesh.vertices);
   // Before everything, even where the frame's box is smaller than the mesh.
   double before = c.diagonal;
   if (!box.is_empty()) before += (box.center() - c.center).norm() + box.diagonal();
-  parallel_for(static_cast<std::size_t>(c.height), [&](std::size_t y) {
-    for (int x = 0; x < c.width; ++x) {
+  const Window& w = samples.window;
+  parallel_for(static_cast<std::size_t>(std::max(0, w.y1 - w.y0 + 1)), [&](std::size_t row) {
+    const std::size_t y = w.y0 + row;
+    for (int x = w.x0; x <= w.x1; ++x) {
       const Vec3 origin = c.at(x, static_cast<int>(y)) - before * c.forward;
       const RayHit hit = scene.first_hit(origin, c.forward);
-      if (hit) samples[y * c.width + x] = {hit.triangle, hit.is_inside, hit.distance - before};
+      if (hit)
+        samples.all[y * c.width + x] = {sampled[hit.triangle], hit.is_inside,
+                                        hit.distance - before};
     }
   });
   return samples;
@@ -129,16 +173,23 @@ Samples cast_samples(const Mesh& mesh, const Camera& c) {
 
 /// Brightness and colour of samples, averaged over each pixel.
 template <typename ColorOf>
-Image average(const Camera& c, const ColorOf& color_of) {
-  Image image{c.width / kSamples, c.height / kSamples, {}};
+Image average(const Camera& c, const Window& window, const ColorOf& color_of) {
+  const int side = c.samples;
+  Image image{c.width / side, c.height / side, {}};
   image.rgb.resize(static_cast<std::size_t>(image.width) * image.height * 3);
   parallel_for(static_cast<std::size_t>(image.height), [&](std::size_t row) {
     for (int column = 0; column < image.width; ++column) {
+      // A line may run between the window's first samples and those before.
+      const int x = column * side, y = static_cast<int>(row) * side;
+      if (x + side < window.x0 || x > window.x1 || y + side < window.y0 || y > window.y1) {
+        std::copy(kBackground.begin(), kBackground.end(),
+                  &image.rgb[3 * (row * image.width + column)]);
+        continue;
+      }
       Vec3 sum = Vec3::Zero();
-      for (int dy = 0; dy < kSamples; ++dy)
-        for (int dx = 0; dx < kSamples; ++dx)
-          sum += color_of(column * kSamples + dx, static_cast<int>(row) * kSamples + dy);
-      sum /= kSamples * kSamples;
+      for (int dy = 0; dy < side; ++dy)
+        for (int dx = 0; dx < side; ++dx) sum += color_of(x + dx, y + dy);
+      sum /= side * side;
       for (int k = 0; k < 3; ++k)
         image.rgb[3 * (row * image.width + column) + k] =
             static_cast<std::uint8_t>(std::lround(std::clamp(sum[k], 0.0, 255.0)));
@@ -168,7 +219,8 @@ double splat_radius(const PointCloud& cloud, const Box& box) {
 
 /// The nearest point over each sample; equal depth goes to the first point.
 Samples splat(const PointCloud& cloud, const Camera& c, double radius) {
-  Samples samples(static_cast<std::size_t>(c.width) * c.height);
+  Samples samples{std::vector<Sample>(static_cast<std::size_t>(c.width) * c.height),
+                  {0, 0, c.width - 1, c.height - 1}};
   const double r = std::clamp(radius / c.step, 0.75, 8.0);
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (!cloud.points[i].allFinite()) continue;
@@ -184,7 +236,7 @@ Samples splat(const PointCloud& cloud, const Camera& c, double radius) {
     for (int sy = y0; sy <= y1; ++sy)
       for (int sx = x0; sx <= x1; ++sx) {
         if (std::hypot(sx + 0.5 - x, sy + 0.5 - y) > r) continue;
-        Sample& s = samples[static_cast<std::size_t>(sy) * c.width + sx];
+        Sample& s = samples.all[static_cast<std::size_t>(sy) * c.width + sx];
         if (s.face < 0 || depth < s.depth) s = {static_cast<int>(i), false, depth};
       }
   }
@@ -243,7 +295,7 @@ std::string fit_text(std::string text, int width) {
 Image render_preview(const Mesh& mesh, const PreviewOptions& options,
                      const std::vector<int>& facet_of_face,
                      const std::vector<Color>& color_of_face) {
-  assert(options.width > 0 && options.height > 0);
+  assert(options.width > 0 && options.height > 0 && options.samples > 0);
   assert(facet_of_face.empty() || facet_of_face.size() == mesh.faces.size());
   assert(color_of_face.empty() || color_of_face.size() == mesh.faces.size());
   const Camera c =
@@ -251,9 +303,9 @@ Image render_preview(const Mesh& mesh, const PreviewOptions& options,
   const std::vector<Surface> surfaces = make_surfaces(mesh, facet_of_face);
   const Samples samples = cast_samples(mesh, c);
   const auto at = [&](int x, int y) -> const Sample& {
-    return samples[static_cast<std::size_t>(y) * c.width + x];
+    return samples.all[static_cast<std::size_t>(y) * c.width + x];
   };
-  return average(c, [&](int x, int y) -> Vec3 {
+  return average(c, samples.window, [&](int x, int y) -> Vec3 {
     const Sample& s = at(x, y);
     Vec3 color = as_vector(kBackground);
     if (s.face >= 0) {
@@ -269,13 +321,13 @@ Image render_preview(const Mesh& mesh, const PreviewOptions& options,
 }
 
 Image render_preview(const PointCloud& cloud, const PreviewOptions& options) {
-  assert(options.width > 0 && options.height > 0);
+  assert(options.width > 0 && options.height > 0 && options.samples > 0);
   assert(cloud.normals.empty() || cloud.normals.size() == cloud.points.size());
   const Box own = finite_box(cloud.points);
   const Camera c = make_camera(options, options.box.is_empty() ? own : options.box);
   const Samples samples = splat(cloud, c, splat_radius(cloud, own));
-  return average(c, [&](int x, int y) -> Vec3 {
-    const Sample& s = samples[static_cast<std::size_t>(y) * c.width + x];
+  return average(c, samples.window, [&](int x, int y) -> Vec3 {
+    const Sample& s = samples.all[static_cast<std::size_t>(y) * c.width + x];
     if (s.face < 0) return as_vector(kBackground);
     if (cloud.normals.empty())  // the nearer the brighter
       return std::clamp(0.65 - 0.6 * s.depth / c.diagonal, 0.2, 1.0) * as_vector(kLightGrey);

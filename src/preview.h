@@ -23,6 +23,7 @@ struct PreviewOptions {
   int width = 480, height = 360;
   double azimuth_deg = 35,
          elevation_deg = 28;  ///< where the camera looks from; azimuth 0 = from −y (south)
+  int samples = 2;            ///< rays along a pixel's side
   bool has_edges = true;      ///< dark lines where neighbouring pixels see different facets
   Box box;  ///< what to frame; empty: the mesh's own box. The same box gives the same camera
 };

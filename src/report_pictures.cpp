@@ -113,11 +113,13 @@ std::vector<std::string> draw_building(const Building& b, const PictureOptions& 
   std::vector<std::string> pictures(1);
   if (view.box.is_empty()) return {};
   view.has_edges = b.source.mesh.faces.size() < kFineFaces;
+  view.samples = view.has_edges ? 2 : 1;
   if (b.source.is_mesh() || !b.source.cloud.points.empty())
     pictures[0] = encode_small_png(b.source.is_mesh() ? render_preview(b.source.mesh, view)
                                                       : render_preview(b.source.cloud, view),
                                    options.most_bytes);
   view.has_edges = true;
+  view.samples = 2;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     pictures.emplace_back();
     if (layers[k].faces.empty()) continue;

@@ -20,7 +20,8 @@ function make(tag, attributes = {}, ...children) {
 const section = (id) => document.getElementById(id);
 const none = '–';
 const isNumber = (x) => typeof x === 'number' && Number.isFinite(x);
-const whole = (x) => (isNumber(x) ? Math.round(x).toLocaleString('en') : none);
+const grouped = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
+const whole = (x) => (isNumber(x) ? grouped.format(x) : none);
 const metres = (x) => (isNumber(x) ? x.toFixed(3) : none);
 const percent = (x, digits = 0) => (isNumber(x) ? `${(100 * x).toFixed(digits)} %` : none);
 const count = (n, one, many = `${one}s`) => `${whole(n)} ${n === 1 ? one : many}`;

@@ -25,8 +25,8 @@ function logScale(values, least, write) {
 const margin = { left: 82, right: 14, top: 12 };
 
 /** Axes with what `plot` says: title, yTitle, scale, `draw(x, y, step)` for the marks, `tell(building)` for the pointer. */
-function drawPlot(box, list, plot) {
-  const width = Math.max(280, box.clientWidth), isNamed = list.length <= 40 && width / Math.max(1, list.length) >= 16;
+function drawPlot(box, width, list, plot) {
+  const isNamed = list.length <= 40 && width / Math.max(1, list.length) >= 16;
   const shorten = (name) => (name.length > 16 ? `${name.slice(0, 15)}…` : name);
   const longest = Math.max(0, ...list.map((b) => shorten(b.name).length));
   const bottom = isNamed ? 36 + 4.6 * longest : 40, height = 230 + bottom;
@@ -41,7 +41,7 @@ function drawPlot(box, list, plot) {
   const small = (plot.scale.minor ?? []).map((t) => `M${margin.left - 3} ${y(t)}h3`).join('');
   svg.append(make('svg:path', { class: 'axis', d: `M${margin.left} ${margin.top}V${base}H${right}${small}` }),
     text(plot.yTitle, { transform: `translate(14 ${(base + margin.top) / 2}) rotate(-90)`, 'text-anchor': 'middle' }));
-  const every = isNamed ? 1 : Math.max(1, Math.ceil(list.length / (width / 60)));
+  const [every] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 1e4].filter((n) => list.length / n <= width / 60);
   list.forEach((b, i) => {
     if (isNamed) {
       svg.append(text(shorten(b.name), { transform: `translate(${x(i) + 4} ${base + 12}) rotate(-40)`, 'text-anchor': 'end' }));
@@ -122,10 +122,10 @@ function showPlots() {
   const frames = plots.map(() => make('div', { class: 'plot' }));
   box.append(...frames);
   let list = buildings, width = 0;
-  const draw = () => plots.forEach((plot, i) => drawPlot(frames[i], list, { ...plot, draw: plot.series ? dots(list, plot.series, failed) : stacks(list) }));
-  new ResizeObserver(() => {
-    if (box.clientWidth !== width) draw();
-    width = box.clientWidth;
-  }).observe(box);
+  const draw = () => {
+    width = frames[0].clientWidth;
+    plots.forEach((plot, i) => drawPlot(frames[i], Math.max(280, width), list, { ...plot, draw: plot.series ? dots(list, plot.series, failed) : stacks(list) }));
+  };
+  new ResizeObserver(() => { if (frames[0].clientWidth !== width) draw(); }).observe(frames[0]);
   return (shown) => { list = shown; draw(); };
 }

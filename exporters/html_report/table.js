@@ -130,33 +130,32 @@ function widthOf(picture) {
   return header.charCodeAt(18) * 256 + header.charCodeAt(19);
 }
 
-/** Pictures are given to the browser when they come near: a page of thousands opens at once. */
+/** Cards are filled when they come near: a page of thousands of pictures opens at once. */
 const loader = new IntersectionObserver((entries) => {
   for (const { target, isIntersecting } of entries)
-    if (isIntersecting) loadPictures(target);
+    if (isIntersecting) fillCard(target);
 }, { rootMargin: '1000px' });
 
-function loadPictures(card) {
-  loader.unobserve(card);
-  for (const image of card.querySelectorAll('img:not([src])'))
-    image.src = pictures[Number(image.dataset.building)][Number(image.dataset.picture)];
+function cardOf(b) {
+  const card = make('article', { class: b.isFailed ? 'card failed' : 'card', id: `b${b.index}` },
+    make('h3', {}, b.name, b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed'),
+      make('span', { class: 'soft' }, `${count(b.planes, 'plane')}, ${count(b.segments, 'segment')}`)));
+  loader.observe(card);
+  return card;
 }
 
-function cardOf(b) {
-  const own = pictures[b.index] ?? [];
+function fillCard(card) {
+  loader.unobserve(card);
+  if (card.childElementCount > 1) return;
+  const b = buildings[Number(card.id.slice(1))], own = pictures[b.index] ?? [];
   const picture = (i, title, note, failure) => make('figure', {}, own[i]
-    ? make('img', { alt: `${b.name}, ${title}`, loading: 'lazy', decoding: 'async', 'data-building': b.index, 'data-picture': i })
+    ? make('img', { src: own[i], alt: `${b.name}, ${title}`, loading: 'lazy', decoding: 'async' })
     : make('div', { class: failure ? 'none' : 'none calm' }, failure ? 'no mesh' : 'no picture'), make('figcaption', {}, make('b', {}, title), ' ', note));
   const strip = [picture(0, 'Source', `${whole(b.size)} ${b.unit}`, false),
     ...b.own.map((l, k) => picture(k + 1, `Layer ${k}`, l && !l.failure ? `${whole(l.faces)} faces, ${metres(l.hausdorff)} m` : 'failed', !l || l.failure))];
-  const card = make('article', { class: b.isFailed ? 'card failed' : 'card', id: `b${b.index}` },
-    make('h3', {}, b.name, b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed'),
-      make('span', { class: 'soft' }, `${count(b.planes, 'plane')}, ${count(b.segments, 'segment')}`)),
-    ...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
-    make('div', { class: 'strip' }, ...strip),
-    b.warnings.length > 0 && make('details', {}, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
-  loader.observe(card);
-  return card;
+  card.append(...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
+    make('div', { class: 'strip' }, ...strip));
+  if (b.warnings.length) card.append(make('details', {}, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
 }
 
 /** Returns a function that shows the first `limit` of the given buildings, in their order. */
@@ -169,13 +168,13 @@ function showPictures() {
   }
   const width = Math.min(320, Math.max(...some.slice(0, 20).map(widthOf)));
   const card = (layerCount + 1) * (Math.max(width, 96) + 8) + 24, withPictures = pictures.filter((own) => own.length).length;
-  const cards = make('div', { class: 'cards', style: { '--columns': layerCount + 1, '--card': `${card}px`, '--tall': `${Math.round(width * 0.75) + 80}px` } });
+  const cards = make('div', { class: 'cards', style: { '--columns': layerCount + 1, '--card': `${card}px`, '--tall': `${Math.round(width * 0.75) + 85}px` } });
   const swatch = (color, text) => make('span', {}, make('span', { class: 'swatch', style: { '--c': color } }), text);
   box.append(make('p', { class: 'soft' }, 'Each building through one camera, from where its source shows most. Surfaces have the colour of the layer on which their part appears; dark red: seen from behind.'),
     make('div', { class: 'legend' }, ...layers.map((k) => swatch(colorOf(k), `appears on layer ${k}`)), swatch('#bcbec0', 'of no segment (base, closures)')));
   if (withPictures < buildings.length) box.append(make('p', { class: 'note' }, `${whole(withPictures)} of ${whole(buildings.length)} buildings have pictures.`));
   box.append(cards);
   const all = [];
-  addEventListener('beforeprint', () => all.forEach(loadPictures));
+  addEventListener('beforeprint', () => all.forEach(fillCard));
   return (list, limit) => cards.replaceChildren(...list.slice(0, limit).map((b) => (all[b.index] ??= cardOf(b))));
 }
