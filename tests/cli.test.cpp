@@ -100,6 +100,7 @@ TEST_CASE("build writes every file of the contract and eval finds each layer wat
         CHECK(json["hausdorff"]["relative"] < 0.05);
       }
   }
+  CHECK_THAT(slurp(f / "out/report.html"), Catch::Contains("data:image/png;base64,"));
   const auto report = nlohmann::json::parse(slurp(f / "out/report.json"));
   CHECK(report["buildings"].size() == 2);
   CHECK(report["parameters"]["ns"] == 24);
@@ -114,6 +115,7 @@ TEST_CASE("a bad building among good ones: exit 1, the others complete, one line
   const Result r = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() + kSmall);
   CHECK(r.exit_code == 1);
   CHECK_THAT(r.err, Catch::Contains("bad.off"));
+  CHECK_THAT(slurp(f / "out/report.html"), Catch::Contains("bad.off"));
   CHECK(fs::exists(f / "out/buildings/good.glb"));
   CHECK(fs::exists(f / "out/tileset.json"));
 }
@@ -145,7 +147,8 @@ TEST_CASE("a config file sets options, the command line wins") {
   Folder f;
   const std::string house = f.write("house.off", off(test::gable_house(12, 9, 6, 4)));
   const std::string config =
-      f.write("colod.toml", "ns = 30\nnr = 32\nlayers = 2\nmin-points = 1\nrules = \"paper\"\n"
+      f.write("colod.toml",
+              "ns = 30\nnr = 32\nlayers = 2\nmin-points = 1\nrules = \"paper\"\n"
               "visibility = \"sweep\"\n");
   const Result r = f.colod("build " + house + " -o " + (f / "out").string() + " --quiet --config " +
                            config + " --ns 20");
@@ -168,7 +171,9 @@ TEST_CASE("info tells what a mesh and a folder of ours hold") {
   const auto json = nlohmann::json::parse(f.colod("info " + house).out);
   CHECK(json["watertight"] == true);
   CHECK(json["faces"] == 16);
-  REQUIRE(f.colod("build " + house + kSmall + " -o " + (f / "out").string()).exit_code == 0);
+  REQUIRE(f.colod("build " + house + kSmall + " -o " + (f / "out").string() + " --no-report-html")
+              .exit_code == 0);
+  CHECK(!fs::exists(f / "out/report.html"));
   CHECK(nlohmann::json::parse(f.colod("info " + (f / "out").string()).out)["contents"] >= 3);
   CHECK(f.colod("info " + (f / "out/buildings/house.glb").string()).exit_code == 0);
 }

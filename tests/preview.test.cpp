@@ -1,6 +1,7 @@
 #include "../src/preview.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "meshes.h"
@@ -176,4 +177,13 @@ TEST_CASE("a small PNG keeps to its size and its background is transparent") {
     CHECK(bytes.starts_with("\x89PNG"));
   }
   CHECK(encode_small_png(Image{1, 1, {1, 2, 3}}, 1).starts_with("\x89PNG"));
+}
+
+TEST_CASE("faces finer than the samples leave no pinhole") {
+  PreviewOptions o = kSouth;
+  o.samples = 1;
+  const Image i = render_preview(test::sphere_mesh(6), o);
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 100; ++x)
+      if (std::hypot(x - 49.5, y - 49.5) < 44) REQUIRE(pixel(i, x, y) != kBackground);
 }

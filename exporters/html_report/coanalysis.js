@@ -67,7 +67,7 @@ function showConsistency(types) {
   const rows = Object.entries(types).map(([type, t]) => [type, whole(t.seen), whole(t.unseen), whole(t.never), ...layers.map((k) => whole(t.first[k])),
     t.majority_layer < 0 ? none : `Layer ${t.majority_layer}`, percent(t.on_majority_layer), percent(t.of_appearing), percent(t.on_expected_layer), whole(t.buildings), percent(t.buildings_agreeing)]);
   return make('div', { id: 'consistency' }, make('h3', {}, 'Consistency against the ground truth'),
-    make('p', { class: 'note' }, 'Parts of each kind by the layer on which they appear first. Of those that the source shows; the share of buildings all of whose parts lie on the majority layer.'),
+    make('p', { class: 'note' }, 'Parts of each kind by the layer on which they appear first. Shares are of the parts that the source shows; agreeing: buildings all of whose parts lie on the majority layer.'),
     make('div', { class: 'wide' }, table(['Part', 'Seen', 'Unseen', 'Never', ...layers.map((k) => `First on ${k}`), 'Majority', 'On majority', 'Of appearing', 'On expected', 'Buildings', 'Agreeing'], rows)));
 }
 
@@ -81,7 +81,7 @@ function showCoanalysis() {
   if (report.consistency) box.append(showConsistency(report.consistency));
 }
 
-const stages = { read: 'Reading', planes: 'Planes', visibility: 'Visibility', segments: 'Segments', similarity: 'Descriptors', extraction: 'Extraction', measure: 'Measuring', pictures: 'Pictures for this page', export: 'Export' };
+const stages = { read: 'Reading', planes: 'Planes', visibility: 'Visibility', segments: 'Segments', similarity: 'Descriptors', extraction: 'Extraction', measure: 'Measuring', pictures: 'Pictures', export: 'Export' };
 
 function showTime() {
   let rows = Object.entries(stages).map(([key, title]) => {
@@ -99,7 +99,9 @@ function showTime() {
     make('p', { class: 'note' }, 'Wall clock of each building, added up: with several threads buildings overlap, so this is more than the run took. Stages that ran before, into a scene file, are not here.'));
 }
 
+const units = { 'alcove-area': ' m²', distance: ' m', angle: '°' };
+
 function showParameters() {
-  section('parameters').append(make('dl', { class: 'facts' }, ...Object.entries(report.parameters).flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, String(value))])));
+  section('parameters').append(make('dl', { class: 'facts' }, ...Object.entries(report.parameters).flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, `${value}${units[name] ?? ''}`)])));
   document.querySelector('footer').append(`colod ${report.colod}. The figures are those of report.json beside this page, rounded. Lengths in metres, areas in square metres; layer 0 is the coarsest.`);
 }
