@@ -1,5 +1,6 @@
 // Shared by rooms 4 and 9: what planes enclose only in part: trays (balconies), niches (loggias,
-// shop fronts) and shafts (chimneys whose top no scan shows).
+// shop fronts) and shafts (chimneys whose top no scan shows); and dormers, which rays do not part
+// from a steep roof.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,8 @@ struct Hollow {
   enum class Kind {
     kTray,   ///< a floor with thin walls around it and nothing above
     kNiche,  ///< between two walls that face each other, behind the facade
-    kShaft   ///< between two walls that look away from each other; solid
+    kShaft,  ///< between two walls that look away from each other; solid
+    kDormer  ///< on a roof that it stands out of; closed, with nothing missing
   };
   Kind kind;
   std::vector<int> planes;     ///< rising
@@ -41,7 +43,8 @@ struct Hollow {
 };
 
 /// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays
-/// first, then niches, then shafts, by lowest planes. Cheap: pairs of small planes that are near.
+/// first, then niches, shafts and dormers, by lowest planes. Cheap: pairs of small planes that are
+/// near.
 std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& among);
 
 }  // namespace colod

@@ -26,6 +26,11 @@ std::int64_t voxels_in(const HitGrid& grid, const Region& air) {
   return count;
 }
 
+Form form_of(Hollow::Kind kind) {
+  if (kind == Hollow::Kind::kTray) return Form::kTray;
+  return kind == Hollow::Kind::kNiche ? Form::kNiche : Form::kDormer;
+}
+
 std::vector<int> segments_by_plane(std::size_t planes, const SegmentDraft& draft) {
   std::vector<int> of(planes, -1);
   for (std::size_t s = 0; s < draft.segments.size(); ++s)
@@ -61,7 +66,7 @@ bool may_own(const Planes& planes, const Hollow& hollow, double alcove_area) {
   if (hollow.kind == Hollow::Kind::kNiche)
     return std::all_of(hollow.planes.begin(), hollow.planes.end(),
                        [&](int p) { return planes.planes[p].area < alcove_area; });
-  return hollow.kind == Hollow::Kind::kTray;
+  return hollow.kind != Hollow::Kind::kShaft;
 }
 
 }  // namespace
@@ -81,14 +86,15 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
     if (home < 0) {
       home = static_cast<int>(draft.segments.size());
       draft.segments.emplace_back();
-      draft.segments.back().voxels = voxels_in(grid, hollow.air);
+      draft.segments.back().voxels =
+          voxels_in(grid, hollow.air.empty() ? hollow.solid : hollow.air);
       draft.segments.back().volume =
           static_cast<double>(draft.segments.back().voxels) * grid.voxel_volume();
     }
     Segment& segment = draft.segments[home];
     const bool is_niche = hollow.kind == Hollow::Kind::kNiche;
     if (segment.form == Form::kPlain) {
-      segment.form = is_niche ? Form::kNiche : Form::kTray;
+      segment.form = form_of(hollow.kind);
       segment.is_alcove |= is_niche;
     }
     for (const int p : free) {

@@ -44,7 +44,9 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
 )sql";
 
 Form form_of(std::int64_t stored) {
-  return stored == 1 ? Form::kTray : stored == 2 ? Form::kNiche : Form::kPlain;
+  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer})
+    if (stored == static_cast<int>(form)) return form;
+  return Form::kPlain;
 }
 
 /// One prepared statement: bind in order, step, read columns in order.
@@ -542,7 +544,8 @@ void Store::Impl::get_planes(Building& b) const {
 
 void Store::Impl::get_segments(Building& b) const {
   Statement s = read(
-      "SELECT is_alcove, form, voxels, volume, area, extent, is_flat, eigenvalues, d2, layer FROM segment"
+      "SELECT is_alcove, form, voxels, volume, area, extent, is_flat, eigenvalues, d2, layer FROM "
+      "segment"
       " WHERE building = ?1 ORDER BY id");
   s.bind(b.source.name);
   while (s.step()) {
