@@ -111,21 +111,21 @@ double largest_area(const std::vector<Panel>& panels) {
   return most;
 }
 
-/// Of a tray, or other walls of a shaft that is known.
-bool is_known(const Planes& planes, const std::vector<Hollow>& hollows, const Hollow& shaft) {
+/// Of a tray, or other walls of a shaft or a bay that is known.
+bool is_known(const Planes& planes, const std::vector<Hollow>& hollows, const Hollow& part) {
   for (const Hollow& h : hollows) {
     Region grown = h.solid;
     for (HalfSpace& side : grown) side.offset += kReach;
-    for (const int p : shaft.planes) {
+    for (const int p : part.planes) {
       if (std::find(h.planes.begin(), h.planes.end(), p) != h.planes.end()) return true;
-      if (h.kind == Hollow::Kind::kShaft && contains(grown, planes.planes[p].centroid)) return true;
+      if (h.kind == part.kind && contains(grown, planes.planes[p].centroid)) return true;
     }
   }
   return false;
 }
 
 void put_in_order(Hollow& hollow) {
-  if (hollow.bounds.empty() && hollow.kind != Hollow::Kind::kDormer) hollow.bounds = hollow.planes;
+  if (hollow.bounds.empty() && hollow.has_gaps()) hollow.bounds = hollow.planes;
   for (std::vector<int>* list : {&hollow.planes, &hollow.bounds}) {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
@@ -165,6 +165,11 @@ std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& a
       if (is_near(walls[i]->box, walls[j]->box, kTouch))
         if (auto shaft = shaft_at_corner(panels, *walls[i], *walls[j]))
           if (!is_known(planes, hollows, *shaft)) hollows.push_back(std::move(*shaft));
+  for (std::size_t i = 0; i < walls.size(); ++i)
+    for (std::size_t j = i + 1; j < walls.size(); ++j)
+      if (is_near(walls[i]->box, walls[j]->box, kMostWidth))
+        if (auto bay = bay_between(panels, *walls[i], *walls[j]))
+          if (!is_known(planes, hollows, *bay)) hollows.push_back(std::move(*bay));
   for (Hollow& h : dormers_on(panels)) hollows.push_back(std::move(h));
   for (Hollow& h : hollows) put_in_order(h);
   return hollows;

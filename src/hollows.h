@@ -1,6 +1,6 @@
 // Shared by rooms 4 and 9: what planes enclose only in part: trays (balconies), niches (loggias,
-// shop fronts) and shafts (chimneys whose top no scan shows); and dormers, which rays do not part
-// from a steep roof.
+// shop fronts) and shafts (chimneys whose top no scan shows); and bays and dormers, which rays
+// do not always part from what is behind them.
 #pragma once
 
 #include <vector>
@@ -23,6 +23,7 @@ struct Hollow {
     kTray,   ///< a floor with thin walls around it and nothing above
     kNiche,  ///< between two walls that face each other, behind the facade
     kShaft,  ///< between two walls that look away from each other; solid
+    kBay,    ///< before a facade; closed, with nothing missing
     kDormer  ///< on a roof that it stands out of; closed, with nothing missing
   };
   Kind kind;
@@ -31,6 +32,9 @@ struct Hollow {
   Region air;                  ///< outside the building, whatever rays see; a shaft has none
   Region solid;                ///< inside it: a tray's floor, a shaft; a niche has none
   std::vector<Region> sheets;  ///< thin walls: rays say nothing of them
+
+  /// Something of it may be missing: bays and dormers are whole.
+  bool has_gaps() const { return kind != Kind::kBay && kind != Kind::kDormer; }
 
   /// A face that must be there although no plane shows it.
   struct Rim {
@@ -43,8 +47,8 @@ struct Hollow {
 };
 
 /// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays
-/// first, then niches, shafts and dormers, by lowest planes. Cheap: pairs of small planes that are
-/// near.
+/// first, then niches, shafts, bays and dormers, by lowest planes. Cheap: pairs of small planes
+/// that are near.
 std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& among);
 
 }  // namespace colod

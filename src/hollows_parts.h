@@ -73,6 +73,7 @@ std::optional<Hollow> shaft_between(const std::vector<Panel>& panels, const Pane
                                     const Panel& b);
 std::optional<Hollow> shaft_at_corner(const std::vector<Panel>& panels, const Panel& a,
                                       const Panel& b);
+std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel& a, const Panel& b);
 std::vector<Hollow> dormers_on(const std::vector<Panel>& panels);
 
 }  // namespace colod::hollows

@@ -18,7 +18,7 @@ struct SegmentOptions {
 };
 
 /// What planes enclose only in part is a kind of its own (hollows.h).
-enum class Form { kPlain, kTray, kNiche, kDormer };
+enum class Form { kPlain, kTray, kNiche, kDormer, kBay };
 
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one

@@ -28,7 +28,8 @@ std::int64_t voxels_in(const HitGrid& grid, const Region& air) {
 
 Form form_of(Hollow::Kind kind) {
   if (kind == Hollow::Kind::kTray) return Form::kTray;
-  return kind == Hollow::Kind::kNiche ? Form::kNiche : Form::kDormer;
+  if (kind == Hollow::Kind::kNiche) return Form::kNiche;
+  return kind == Hollow::Kind::kBay ? Form::kBay : Form::kDormer;
 }
 
 std::vector<int> segments_by_plane(std::size_t planes, const SegmentDraft& draft) {

@@ -44,7 +44,7 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
 )sql";
 
 Form form_of(std::int64_t stored) {
-  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer})
+  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay})
     if (stored == static_cast<int>(form)) return form;
   return Form::kPlain;
 }

@@ -56,6 +56,16 @@ struct TwoBoxes {
 
 }  // namespace
 
+TEST_CASE("what is of a form is on one layer, whatever its size") {
+  std::vector<Descriptor> segments = kinds(2, 12);
+  for (const int i : {0, 2, 4, 1}) segments[i].form = Form::kTray;
+  for (const int i : {3, 5, 6}) segments[i].form = Form::kNiche;
+  const std::vector<int> layer = cluster_segments(segments, {}).layer;
+  CHECK(layer[8] == 1), CHECK(layer[9] == 2);
+  for (const int i : {0, 2, 4, 1}) CHECK(layer[i] == 1);
+  for (const int i : {3, 5, 6}) CHECK(layer[i] == 2);
+}
+
 TEST_CASE("kinds that differ are told apart and ordered by size") {
   for (const bool is_paper : {false, true})
     for (const int count : {2, 3, 4}) {

@@ -38,6 +38,7 @@ PolygonMesh mesh_of(const Mesh& mesh) {
 TEST_CASE("a plain house has no hollow, nor has one with a solid box on it") {
   CHECK(hollows_of(plain_house()).empty());
   CHECK(hollows_of(join(plain_house(), box_mesh({3, -1.2, 2.8}, {6, 0, 4}))).empty());
+  CHECK(hollows_of(gable_house(10, 8, 5, 4)).empty());
   CHECK(hollows_of(join(plain_house(), box_mesh({2, 2, 7}, {3, 2.6, 8.5}))).empty());
 }
 
@@ -70,13 +71,30 @@ TEST_CASE("a loggia is a niche, the space between two bays is none") {
   CHECK_FALSE(contains(found[0].air, {4.5, 0.7, 2.5}));
   const Mesh bays =
       join(join(plain_house(), box_mesh({1, -1, 1}, {3, 0, 4})), box_mesh({6, -1, 1}, {8, 0, 4}));
-  CHECK(hollows_of(bays).empty());
+  for (const Hollow& h : hollows_of(bays)) CHECK(h.kind == Hollow::Kind::kBay);
 }
 
 TEST_CASE("a chimney without its top is a shaft") {
   const auto found = hollows_of(chimney_house());
   REQUIRE_FALSE(found.empty());
   for (const Hollow& h : found) CHECK(h.kind == Hollow::Kind::kShaft);
+}
+
+TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
+  const auto found = hollows_of(dormer_house());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kDormer);
+  CHECK(found[0].planes.size() == 2);
+  CHECK(found[0].rims.empty());
+}
+
+TEST_CASE("a bay is told by its sides, its front and the facade, square or splayed") {
+  for (const double splay : {0.0, 0.5}) {
+    const auto found = hollows_of(bay_house(splay));
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].kind == Hollow::Kind::kBay);
+    CHECK(found[0].planes.size() == 4);
+  }
 }
 
 TEST_CASE("what a scan misses of them stands in the mesh") {

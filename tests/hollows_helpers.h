@@ -52,4 +52,26 @@ inline Mesh chimney_house() {
   return m;
 }
 
+/// A shed dormer 2 wide on a slope of 60°, its cheeks not seen.
+inline Mesh dormer_house() {
+  Mesh m = box_mesh({0, 0, 0}, {10, 8, 4});
+  const double rise = std::sqrt(3.0);  // a metre inward
+  add_quad(m, {0, 0, 4}, {10, 0, 4}, {10, 3, 4 + 3 * rise}, {0, 3, 4 + 3 * rise});
+  const double y = 0.3, top = 4 + rise * 1.1;
+  add_quad(m, {4, y, 4 + rise * y}, {6, y, 4 + rise * y}, {6, y, top}, {4, y, top});
+  add_quad(m, {4, y, top}, {6, y, top}, {6, 1.1, top}, {4, 1.1, top});
+  return m;
+}
+
+/// A bay 2.5 wide and 0.9 deep before the front, from z = 1 to 4.5; `splay` narrows its front.
+inline Mesh bay_house(double splay = 0) {
+  Mesh m = plain_house();
+  const double a = 3 + splay, b = 5.5 - splay;
+  add_quad(m, {a, -0.9, 1}, {b, -0.9, 1}, {b, -0.9, 4.5}, {a, -0.9, 4.5});
+  add_quad(m, {3, 0, 1}, {a, -0.9, 1}, {a, -0.9, 4.5}, {3, 0, 4.5});
+  add_quad(m, {b, -0.9, 1}, {5.5, 0, 1}, {5.5, 0, 4.5}, {b, -0.9, 4.5});
+  add_quad(m, {a, -0.9, 4.5}, {b, -0.9, 4.5}, {5.5, 0, 4.5}, {3, 0, 4.5});
+  return m;
+}
+
 }  // namespace colod::test

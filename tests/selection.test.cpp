@@ -274,6 +274,27 @@ TEST_CASE("robust: segments of little volume leave, as far as the bound on f_r l
   CHECK(select_layer0({house}).is_layer0[0] == std::vector<char>{1, 1, 1, 0, 0, 1});
 }
 
+TEST_CASE("robust: alike segments near 2 % decide together, others for themselves") {
+  const auto block = [](double share, double extent) {
+    SelectionBuilding b;
+    for (const double size : {8.0, extent}) {
+      Descriptor d;
+      d.area = 100 * size, d.extent = size, d.eigenvalues = size * size * Vec3(1, 1, 1);
+      b.segments.push_back(d);
+    }
+    b.coverage = {{{0}, 1 - share}, {{1}, share}};
+    return b;
+  };
+  const auto verdicts = [](const Selection& s) {
+    std::vector<int> out;
+    for (const auto& b : s.is_layer0) out.push_back(b[1]);
+    return out;
+  };
+  CHECK(verdicts(select_layer0({block(0.021, 1), block(0.018, 1)})) == std::vector<int>{0, 0});
+  CHECK(verdicts(select_layer0({block(0.023, 1), block(0.019, 1)})) == std::vector<int>{1, 1});
+  CHECK(verdicts(select_layer0({block(0.021, 1), block(0.018, 3)})) == std::vector<int>{1, 0});
+}
+
 TEST_CASE("robust: what is small by itself but much together stays where the bound needs it") {
   SelectionBuilding house;
   for (int s = 0; s < 101; ++s) {
