@@ -125,7 +125,7 @@ bool is_known(const Planes& planes, const std::vector<Hollow>& hollows, const Ho
 }
 
 void put_in_order(Hollow& hollow) {
-  if (hollow.bounds.empty() && hollow.has_gaps()) hollow.bounds = hollow.planes;
+  if (hollow.bounds.empty() && !hollow.is_whole) hollow.bounds = hollow.planes;
   for (std::vector<int>* list : {&hollow.planes, &hollow.bounds}) {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());

@@ -24,7 +24,7 @@ struct Hollow {
     kNiche,  ///< between two walls that face each other, behind the facade
     kShaft,  ///< between two walls that look away from each other; solid
     kBay,    ///< before a facade; closed, with nothing missing
-    kDormer  ///< on a roof that it stands out of; closed, with nothing missing
+    kDormer  ///< on a roof that it stands out of
   };
   Kind kind;
   std::vector<int> planes;     ///< rising
@@ -33,8 +33,8 @@ struct Hollow {
   Region solid;                ///< inside it: a tray's floor, a shaft; a niche has none
   std::vector<Region> sheets;  ///< thin walls: rays say nothing of them
 
-  /// Something of it may be missing: bays and dormers are whole.
-  bool has_gaps() const { return kind != Kind::kBay && kind != Kind::kDormer; }
+  /// Nothing of it is missing that rays would need: bays, dormers on roofs that are not steep.
+  bool is_whole = false;
 
   /// A face that must be there although no plane shows it.
   struct Rim {

@@ -76,6 +76,7 @@ std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel&
     if (!wall_at(panels, s, forward, foot, least, std::numeric_limits<double>::infinity()))
       continue;
     Hollow bay{Hollow::Kind::kBay, {a.id, b.id}, {}, {}, {}, {}, {}};
+    bay.is_whole = true;
     bay.solid = {{a.plane->normal, a.plane->offset},
                  {b.plane->normal, b.plane->offset},
                  {forward, mouth},
@@ -89,7 +90,7 @@ std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel&
       if (p.plane->area > kMostFront) continue;
       const auto in = std::count_if(p.points.begin(), p.points.end(),
                                     [&](const Vec3& x) { return contains(grown, x); });
-      if (contains(grown, p.plane->centroid) && 2 * in > std::ssize(p.points))
+      if (contains(grown, p.plane->centroid) && 2 * in >= std::ssize(p.points))
         bay.planes.push_back(p.id);
     }
     return bay;

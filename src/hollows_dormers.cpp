@@ -1,7 +1,7 @@
 // Based on: hollows.cpp.
-// Differs: a dormer is closed, but on a mansard's steep slope it stands out by half a metre and no
-// ray
-//   parts it from the attic: its roof, a ledge on a steeper slope, then tells it.
+// Differs: a dormer is closed, but on a steep slope it stands out by half a metre and no ray parts it
+//   from the attic: its roof, a ledge on a steeper slope, then tells it. On such a slope its cheeks
+//   are small and often not seen, and are added.
 // Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,7 @@ constexpr double kLeastRoof = 0.4, kMostRoof = 8;  // m² of T
 constexpr double kLeastHost = 4;                   // times T's area: R's
 constexpr double kCrossing = 0.966;                // cosine (15°) of T and R at most
 constexpr double kLeastRelief = 0.35;              // metres
+constexpr double kSteep = 0.55;                    // upward part of the normal: 57°
 constexpr double kMostWall = 6;                    // m² of a dormer's wall
 
 /// Distances of a panel's outline from a plane.
@@ -84,14 +85,38 @@ Hollow make_dormer(const std::vector<Panel>& panels, const std::vector<Ledge>& l
   dormer.solid.push_back({-across, -width.low});
   dormer.solid.push_back({-Vec3::UnitZ(), -(box.min.z() - 2.5)});
   const Vec3 out = Vec3(host.normal.x(), host.normal.y(), 0).normalized();
-  dormer.solid.push_back({out, first.roof->along(out).high + 0.1});
+  dormer.solid.push_back({out, first.roof->along(out).high + 0.02});
+  std::vector<const Panel*> walls;
   for (const Panel& p : panels) {
     if (!p.is_wall || p.plane->area > kMostWall || !is_near(p.box, box, 0.25)) continue;
     const Range d = relief(p, host), own = p.along(across);
     if (d.low > -0.4 && d.high > 0.2 && own.low > width.low - 0.3 && own.high < width.high + 0.3 &&
         p.box.max.z() < box.max.z() + 0.2)
-      dormer.planes.push_back(p.id);
+      dormer.planes.push_back(p.id), walls.push_back(&p);
   }
+  dormer.is_whole = host.normal.z() > kSteep;
+  if (dormer.is_whole) return dormer;
+  // A cheek or a front that no scan shows is as deep or as wide as the roof.
+  const Range height = {box.min.z() - 2.5, box.max.z()};
+  const Range depth = first.roof->along(out);
+  const auto has_wall = [&](const Vec3& direction, double at) {
+    bool has = false;
+    for (const Panel* w : walls) {
+      if (w->out.dot(direction) < 0.8 || std::abs(w->at(direction) - at) > kReach) continue;
+      dormer.solid.push_back({w->plane->normal, w->plane->offset + 0.01});
+      has = true;
+    }
+    return has;
+  };
+  for (const Vec3& side : {across, Vec3(-across)}) {
+    const double at = side.dot(across) > 0 ? width.high : -width.low;
+    if (has_wall(side, at)) continue;
+    const bool is_along = beside(side).dot(out) > 0;
+    dormer.rims.push_back(
+        upright_rim(side, at, is_along ? depth : Range{-depth.high, -depth.low}, height));
+  }
+  if (!has_wall(out, depth.high))
+    dormer.rims.push_back(upright_rim(out, depth.high, width, height));
   return dormer;
 }
 

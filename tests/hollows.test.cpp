@@ -85,7 +85,9 @@ TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   REQUIRE(found.size() == 1);
   CHECK(found[0].kind == Hollow::Kind::kDormer);
   CHECK(found[0].planes.size() == 2);
-  CHECK(found[0].rims.empty());
+  CHECK(found[0].rims.size() == 2);  // the cheeks
+  CHECK(contains(found[0].solid, {5, 0.4, 5.5}));
+  CHECK_FALSE(contains(found[0].solid, {5, 2, 5.5}));
 }
 
 TEST_CASE("a bay is told by its sides, its front and the facade, square or splayed") {
