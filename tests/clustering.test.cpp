@@ -61,7 +61,8 @@ TEST_CASE("what is of a form is on one layer, whatever its size") {
   for (const int i : {0, 2, 4, 1}) segments[i].form = Form::kTray;
   for (const int i : {3, 5, 6}) segments[i].form = Form::kNiche;
   const std::vector<int> layer = cluster_segments(segments, {}).layer;
-  CHECK(layer[8] == 1), CHECK(layer[9] == 2);
+  CHECK(layer[8] == 1);
+  CHECK(layer[9] == 2);
   for (const int i : {0, 2, 4, 1}) CHECK(layer[i] == 1);
   for (const int i : {3, 5, 6}) CHECK(layer[i] == 2);
 }
