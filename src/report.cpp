@@ -104,6 +104,7 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   json["parameters"] = parameters_json(options);
   json["totals"] = {
       {"seconds", totals.seconds},
+      {"export_seconds", scene.export_seconds},
       {"peak_memory_bytes", totals.peak_memory_bytes},
       {"rays", rays},
       {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};

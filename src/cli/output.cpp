@@ -125,6 +125,7 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
 }
 
 void export_scene(Scene& scene, const OutputArguments& a, const Log& log) {
+  Stopwatch watch(scene.export_seconds);
   const std::set<std::string> formats(a.formats.begin(), a.formats.end());
   const GlbOptions glb{
       .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};

@@ -64,7 +64,7 @@ function setError(pixels) {
 function readError() {
   tiles.errorTarget = 2 ** $('error').value;
   $('error-text').textContent = `${short(tiles.errorTarget)} px`;
-  $('meaning').textContent = errorScale > 0 ? `shapes are at most ${short(tiles.errorTarget / errorScale)} px wrong` : '';
+  $('meaning').textContent = errorScale > 0 ? `finer where shapes are ${short(tiles.errorTarget / errorScale)} px wrong` : '';
   setState('loading');
 }
 
