@@ -1,10 +1,12 @@
 // Based on: sampled Hausdorff distance (Cignoni, Rocchini, Scopigno: Metro, 1998).
 // Differs: a lattice instead of random samples, so that the same meshes give the same figure and
-// flat triangles have their corners, edges and middle looked at.
+// flat triangles have their corners, edges and middle looked at; points that cannot be worse than
+// what was found are not asked for.
 #include "deviation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace colod {
 
@@ -14,20 +16,46 @@ constexpr int kMostSteps = 128;      // along a triangle's edge
 constexpr double kSteps = 64;        // along a building's diagonal
 constexpr double kFinestStep = 0.1;  // metres
 
+constexpr double kSlack = 1e-6;  // metres: more than distances are rounded by
+
+/// Worst of `known` and the distances of a triangle's lattice, n steps an edge. Distances change no
+/// faster than places do: a near point settles its neighbours, and bounds the search for the next.
+double worst_of(const Vec3& a, const Vec3& u, const Vec3& v, int n, const RayScene& to,
+                double known) {
+  const Vec3 middle = (u + v) / 3;
+  const double radius = std::max({middle.norm(), (u - middle).norm(), (v - middle).norm()});
+  const double centre = to.nearest(a + middle).distance;
+  if (centre + radius + kSlack <= known) return known;
+  const double share = 1.0 / n, row = share * u.norm(), step = std::max(share * v.norm(), kSlack);
+  double worst = known, first = centre + middle.norm();
+  for (int i = 0; i <= n; ++i) {
+    double within = first;
+    for (int j = 0; j <= n - i;) {
+      const Vec3 p = a + (share * i) * u + (share * j) * v;
+      const double d = to.nearest(p, within + kSlack).distance;
+      worst = std::max(worst, d);
+      if (j == 0) first = d + row;
+      const int jump = 1 + static_cast<int>(std::min<double>(n, (worst - d) / step));
+      within = d + jump * step;
+      j += jump;
+    }
+  }
+  return worst;
+}
+
+bool is_same(const Mesh& a, const Mesh& b) {
+  return a.faces == b.faces && a.vertices == b.vertices;
+}
+
 }  // namespace
 
-double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing) {
-  double worst = 0;
+double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing, double known) {
+  double worst = known;
   for (const Face& f : from.faces) {
     const Vec3 &a = from.vertices[f[0]], u = from.vertices[f[1]] - a, v = from.vertices[f[2]] - a;
     const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
     const int n = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, kMostSteps);
-    const double share = 1.0 / n;
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; j <= n - i; ++j) {
-        const Vec3 p = a + (share * i) * u + (share * j) * v;
-        worst = std::max(worst, to.nearest(p).distance);
-      }
+    worst = worst_of(a, u, v, n, to, worst);
   }
   return worst;
 }
@@ -47,10 +75,11 @@ void measure_visible_errors(ExportBuilding& building) {
   for (std::size_t i = finest; i-- > 0;) {
     double& error = building.layers[i].geometric_error;
     error = std::max(error, least);
-    for (const std::size_t other : {i + 1, finest}) {
+    for (const std::size_t other : std::set<std::size_t>{i + 1, finest}) {
       if (meshes[i].faces.empty() || meshes[other].faces.empty()) continue;
-      error = std::max({error, one_sided_deviation(meshes[i], scenes[other], spacing),
-                        one_sided_deviation(meshes[other], scenes[i], spacing)});
+      if (is_same(meshes[i], meshes[other])) continue;
+      error = one_sided_deviation(meshes[i], scenes[other], spacing, error);
+      error = one_sided_deviation(meshes[other], scenes[i], spacing, error);
     }
     least = error;
   }

@@ -194,11 +194,14 @@ StandIn stand_in_for(const ExportBuilding& building, int index) {
   StandIn best;
   for (const double share : kHeights) {
     box.half.z() = std::max(kLeastHalf, share * height);
-    double lacking = 0, added = 0;
+    double lacking = 0;
     for (const Vec3& p : points) lacking = std::max(lacking, distance(box, p));
-    for (const Vec3& p : lattice(box))
-      added = std::max({added, fine_scene.nearest(p).distance, coarse_scene.nearest(p).distance});
-    box.error = std::max(lacking + building.layers.back().geometric_error, added);
+    box.error = lacking + building.layers.back().geometric_error;
+    for (const Vec3& p : lattice(box)) {  // what the box adds
+      if (box.error >= least) break;      // another height is better
+      box.error =
+          std::max({box.error, fine_scene.nearest(p).distance, coarse_scene.nearest(p).distance});
+    }
     if (box.error < least) best = box, least = box.error;
   }
   best.origin += building.origin;

@@ -85,6 +85,29 @@ std::vector<ExportBuilding> detailed_street(int n) {
 
 }  // namespace
 
+TEST_CASE("a deviation is that of every point of the lattice, though few are asked") {
+  const Mesh house = test::gable_house(12, 9, 6, 4), ball = test::sphere_mesh(2);
+  Mesh far_ball = ball;
+  for (Vec3& p : far_ball.vertices) p = 3 * p + Vec3(5, 4, 7);
+  const Mesh scene = test::join(house, far_ball);
+  for (const auto& [from, to] :
+       {std::pair{&house, &scene}, {&scene, &house}, {&far_ball, &house}}) {
+    const RayScene target(*to);
+    double worst = 0;
+    for (const Face& f : from->faces) {
+      const Vec3 &a = from->vertices[f[0]], u = from->vertices[f[1]] - a,
+                 v = from->vertices[f[2]] - a;
+      const int n = std::ceil(std::max({u.norm(), v.norm(), (u - v).norm()}) / 0.3);
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n - i; ++j)
+          worst =
+              std::max(worst, target.nearest(a + (1.0 * i / n) * u + (1.0 * j / n) * v).distance);
+    }
+    CHECK(one_sided_deviation(*from, target, 0.3) == Approx(worst).margin(1e-5));
+    CHECK(one_sided_deviation(*from, target, 0.3, 99) == 99);
+  }
+}
+
 TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
   for (const double angle : {0.0, 0.4, 1.2}) {
     Mesh mesh = box_mesh({-6, -4, 0}, {6, 4, 7});
