@@ -11,7 +11,7 @@
 namespace colod::hollows {
 namespace {
 
-constexpr double kLeastRoof = 0.4, kMostRoof = 8;  // m² of T
+constexpr double kLeastRoof = 0.7, kMostRoof = 8;  // m² of T
 constexpr double kLeastHost = 4;                   // times T's area: R's
 constexpr double kCrossing = 0.966;                // cosine (15°) of T and R at most
 constexpr double kLeastRelief = 0.35;              // metres
