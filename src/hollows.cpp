@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "hollows_parts.h"
 
@@ -17,6 +18,31 @@ namespace hollows {
 namespace {
 
 constexpr double kGrowth = 0.1;  // metres that a rim reaches beyond its part
+constexpr int kRays = 16;        // that tell a room
+
+bool covers(const Plane& plane, const Vec3& x) {
+  const std::vector<Vec3>& v = plane.outline.vertices;
+  return std::any_of(plane.outline.triangles.begin(), plane.outline.triangles.end(),
+                     [&](const Face& f) {
+                       for (int c = 0; c < 3; ++c)
+                         if ((v[f[(c + 1) % 3]] - v[f[c]]).cross(x - v[f[c]]).dot(plane.normal) < 0)
+                           return false;
+                       return true;
+                     });
+}
+
+/// 1: a ray first meets the front of a plane, −1: the back, 0: none.
+int first_side(const std::vector<Panel>& panels, const Vec3& from, const Vec3& direction) {
+  double nearest = std::numeric_limits<double>::infinity();
+  int side = 0;
+  for (const Panel& p : panels) {
+    const double slope = p.plane->normal.dot(direction);
+    const double t = std::abs(slope) > 1e-6 ? -p.plane->signed_distance(from) / slope : -1;
+    if (t <= 0 || t >= nearest || !covers(*p.plane, from + t * direction)) continue;
+    nearest = t, side = slope < 0 ? 1 : -1;
+  }
+  return side;
+}
 
 }  // namespace
 
@@ -97,6 +123,15 @@ bool reaches_into(const Panel& panel, const Region& region) {
     return contains(region,
                     (outline.vertices[f[0]] + outline.vertices[f[1]] + outline.vertices[f[2]]) / 3);
   });
+}
+
+bool is_room(const std::vector<Panel>& panels, const Vec3& x) {
+  int balance = 0;
+  for (int k = 0; k < kRays; ++k) {
+    const double angle = 2 * std::numbers::pi * (k + 0.5) / kRays;
+    balance += first_side(panels, x, Vec3(std::cos(angle), std::sin(angle), 0));
+  }
+  return balance <= -kRays / 2;
 }
 
 }  // namespace hollows

@@ -27,11 +27,11 @@ struct Hollow {
     kDormer  ///< on a roof that it stands out of
   };
   Kind kind;
-  std::vector<int> planes;     ///< rising
-  std::vector<int> bounds;     ///< those of them that end it, rising: the mesh cannot do without
-  Region air;                  ///< outside the building, whatever rays see; a shaft has none
-  Region solid;                ///< inside it: a tray's floor, a shaft; a niche has none
-  std::vector<Region> sheets;  ///< thin walls: rays say nothing of them
+  std::vector<int> planes = {};  ///< rising
+  std::vector<int> bounds = {};  ///< those of them that end it, rising: the mesh cannot do without
+  Region air = {};               ///< outside the building, whatever rays see; a shaft has none
+  Region solid = {};             ///< inside it: a tray's floor, a shaft; a niche has none
+  std::vector<Region> sheets = {};  ///< thin walls: rays say nothing of them
 
   /// Nothing of it is missing that rays would need: bays, dormers on roofs that are not steep.
   bool is_whole = false;
@@ -43,7 +43,7 @@ struct Hollow {
     std::vector<Vec3> hull;  ///< on it
     int like = -1;           ///< the plane whose back it is; −1: none
   };
-  std::vector<Rim> rims;
+  std::vector<Rim> rims = {};
 };
 
 /// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays

@@ -75,7 +75,7 @@ std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel&
     const double least = 1.5 * std::max(front->plane->area, a.plane->area + b.plane->area);
     if (!wall_at(panels, s, forward, foot, least, std::numeric_limits<double>::infinity()))
       continue;
-    Hollow bay{Hollow::Kind::kBay, {a.id, b.id}, {}, {}, {}, {}, {}};
+    Hollow bay{.kind = Hollow::Kind::kBay, .planes = {a.id, b.id}};
     bay.is_whole = true;
     bay.solid = {{a.plane->normal, a.plane->offset},
                  {b.plane->normal, b.plane->offset},

@@ -1,5 +1,6 @@
 // Based on: hollows.cpp.
-// Differs: a dormer is closed, but on a steep slope it stands out by half a metre and no ray parts it
+// Differs: a dormer is closed, but on a steep slope it stands out by half a metre and no ray parts
+// it
 //   from the attic: its roof, a ledge on a steeper slope, then tells it. On such a slope its cheeks
 //   are small and often not seen, and are added.
 // Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
@@ -66,7 +67,7 @@ std::vector<Ledge> find_ledges(const std::vector<Panel>& panels) {
 Hollow make_dormer(const std::vector<Panel>& panels, const std::vector<Ledge>& ledges,
                    const Ledge& first) {
   const Plane& host = *first.host->plane;
-  Hollow dormer{Hollow::Kind::kDormer, {}, {}, {}, {}, {}, {}};
+  Hollow dormer{.kind = Hollow::Kind::kDormer, .planes = {}};
   Box box;
   for (const Ledge& l : ledges)
     if (l.roof == first.roof ||

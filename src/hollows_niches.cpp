@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLeastDepth = 0.5, kMostDepth = 4;  // metres of a niche
 constexpr double kLeastWidth = 0.8;
+constexpr double kAbove = 0.5;  // metres above a niche: where a room must be
 
 /// Between two walls that face each other.
 struct Gap {
@@ -93,12 +94,19 @@ std::optional<Hollow> niche_in(const std::vector<Panel>& panels, const Gap& gap,
     Range height = gap.height;
     if (ceiling) height.high = ceiling->plane->centroid.z();
     if (floor) height.low = floor->plane->centroid.z();
+    const Vec3 middle = 0.5 * (gap.width.low + gap.width.high) * gap.across +
+                        0.5 * (back + mouth) * forward +
+                        0.5 * (gap.height.low + gap.height.high) * Vec3::UnitZ();
+    const double above = 0.5 * gap.height.length() + kAbove;
+    if (is_room(panels, middle)) continue;  // walls of noise
+    // Without a ceiling that is seen it may be a gap between what stands on a roof.
+    if (!ceiling && !is_room(panels, middle + above * Vec3::UnitZ())) continue;
     const auto largest_back = std::max_element(backs.begin(), backs.end(), [](auto* x, auto* y) {
       return x->plane->area < y->plane->area;
     });
     const Panel* closing = backs.empty() ? nullptr : *largest_back;
     const double behind = closing ? closing->at(forward) : back;
-    Hollow niche{Hollow::Kind::kNiche, {gap.left->id, gap.right->id}, {}, {}, {}, {}, {}};
+    Hollow niche{.kind = Hollow::Kind::kNiche, .planes = {gap.left->id, gap.right->id}};
     niche.air = {{-gap.left->plane->normal, -gap.left->plane->offset},
                  {-gap.right->plane->normal, -gap.right->plane->offset},
                  {-forward, -behind + 0.02},

@@ -55,6 +55,9 @@ bool is_near(const Box& a, const Box& b, double reach);
 /// A triangle of its outline has its middle there.
 bool reaches_into(const Panel& panel, const Region& region);
 
+/// Inside the building, as most level rays from there see it: they meet planes from their back.
+bool is_room(const std::vector<Panel>& panels, const Vec3& x);
+
 /// The rectangle on a plane that covers ranges along two directions, a little grown.
 std::vector<Vec3> rectangle(const Vec3& normal, double offset, const Vec3& a, const Range& ra,
                             const Vec3& b, const Range& rb);

@@ -30,7 +30,7 @@ std::optional<Hollow> shaft_between(const std::vector<Panel>& panels, const Pane
   Range height = a.height();
   height.extend(b.height());
   const Range thick = {b.at(a.out), a.at(a.out)};
-  Hollow shaft{Hollow::Kind::kShaft, {a.id, b.id}, {}, {}, {}, {}, {}};
+  Hollow shaft{.kind = Hollow::Kind::kShaft, .planes = {a.id, b.id}};
   shaft.solid = {{a.plane->normal, a.plane->offset},
                  {b.plane->normal, b.plane->offset},
                  {side, across.high},
@@ -75,7 +75,7 @@ std::optional<Hollow> shaft_at_corner(const std::vector<Panel>& panels, const Pa
     return std::nullopt;
   Range height = a.height();
   height.extend(b.height());
-  Hollow shaft{Hollow::Kind::kShaft, {a.id, b.id}, {}, {}, {}, {}, {}};
+  Hollow shaft{.kind = Hollow::Kind::kShaft, .planes = {a.id, b.id}};
   shaft.solid = {{a.plane->normal, a.plane->offset},
                  {b.plane->normal, b.plane->offset},
                  {-a.out, -depth_a.low},

@@ -13,6 +13,7 @@ constexpr double kThickness = 0.12;  // metres of a wall whose other side is not
 constexpr double kThickest = 0.35;   // metres between both sides of a thin wall
 constexpr double kSlab = 0.18;       // metres of a floor whose underside is not seen
 constexpr double kMostBeyond = 1.5;  // metres of a tray beyond the part of its floor that is seen
+constexpr double kBelow = 1.0;       // metres below a floor: where nothing or a room is
 constexpr double kLeastRail = 0.4, kMostRail = 1.6;  // metres of a tray's wall above its floor
 
 /// A level plane near that height over at least half of the rectangle.
@@ -156,6 +157,9 @@ std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& pan
       *std::max_element(walls.begin(), walls.end(),
                         [](const TrayWall& a, const TrayWall& b) { return a.area < b.area; });
 
+  // Above rooms a floor is a roof, and what stands around it parapets and walls.
+  if (is_room(panels, panel.plane->centroid - kBelow * Vec3::UnitZ())) return std::nullopt;
+
   const double z = panel.plane->centroid.z();
   double top = 0, weight = 0, bottom = z;
   for (const TrayWall& w : walls) {
@@ -166,7 +170,7 @@ std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& pan
   top /= weight;
   if (bottom > z - 0.06) bottom = z - kSlab;
 
-  Hollow tray{Hollow::Kind::kTray, {panel.id}, {}, {}, {}, {}, {}};
+  Hollow tray{.kind = Hollow::Kind::kTray, .planes = {panel.id}};
   tray.air = {{-Vec3::UnitZ(), -z - 0.01}, {Vec3::UnitZ(), top}};
   for (const Vec3& d : {main.out, beside(main.out), Vec3(-main.out), Vec3(-beside(main.out))}) {
     if (std::any_of(walls.begin(), walls.end(),

@@ -54,6 +54,13 @@ TEST_CASE("a balcony is a tray of four planes with air in it") {
   CHECK(found[0].sheets.size() == 3);
 }
 
+TEST_CASE("what parapets surround on a roof is no tray") {
+  Mesh terrace = balcony_house();
+  for (std::size_t v = plain_house().vertices.size(); v < terrace.vertices.size(); ++v)
+    terrace.vertices[v] += Vec3(0, 4, 4.2);
+  CHECK(hollows_of(terrace).empty());
+}
+
 TEST_CASE("a balcony needs its floor and a corner of walls, whatever way it looks") {
   CHECK(hollows_of(without(balcony_house(), {3, -1.2, 3}, {6, 0, 3})).empty());
   CHECK(hollows_of(without(balcony_house(), {6, -2, 2}, {6, 0, 4})).size() == 1);
