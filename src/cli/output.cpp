@@ -86,6 +86,24 @@ void write_page(const Scene& scene, const Options& options, const std::string& r
   write_file(a.out, encode_html_report(page));
 }
 
+EngineOptions engine_options(const OutputArguments& a) {
+  return {.quantization = a.quantization, .pixel_error = a.pixel_error};
+}
+
+/// The files of one building.
+void write_building(const ExportBuilding& b, const std::set<std::string>& formats,
+                    const OutputArguments& a) {
+  const GlbOptions glb{
+      .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
+  if (formats.count("glb")) write_file(a.out, encode_building_glb(b, glb));
+  if (formats.count("engine"))
+    for (const Encoded& file : encode_engine_levels(b, engine_options(a))) write_file(a.out, file);
+  for (const ExportLayer& layer : b.layers) {
+    if (formats.count("obj")) write_file(a.out, encode_obj(b, layer));
+    if (formats.count("ply")) write_file(a.out, encode_ply(b, layer));
+  }
+}
+
 }  // namespace
 
 void add_output_options(CLI::App& app, OutputArguments& a) {
@@ -127,27 +145,17 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
 void export_scene(Scene& scene, const OutputArguments& a, const Log& log) {
   Stopwatch watch(scene.export_seconds);
   const std::set<std::string> formats(a.formats.begin(), a.formats.end());
-  const GlbOptions glb{
-      .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
-  const EngineOptions engine{.quantization = a.quantization, .pixel_error = a.pixel_error};
   std::vector<ExportBuilding> buildings(scene.buildings.size());
   parallel_for(buildings.size(), [&](std::size_t i) {
-    Stopwatch watch(scene.buildings[i].timings.export_);
+    Stopwatch own(scene.buildings[i].timings.export_);
     buildings[i] = export_building(scene.buildings[i]);
     if (buildings[i].layers.empty()) return;
     measure_visible_errors(buildings[i]);
-    if (formats.count("glb")) write_file(a.out, encode_building_glb(buildings[i], glb));
-    if (formats.count("engine"))
-      for (const Encoded& file : encode_engine_levels(buildings[i], engine))
-        write_file(a.out, file);
-    for (const ExportLayer& layer : buildings[i].layers) {
-      if (formats.count("obj")) write_file(a.out, encode_obj(buildings[i], layer));
-      if (formats.count("ply")) write_file(a.out, encode_ply(buildings[i], layer));
-    }
+    write_building(buildings[i], formats, a);
   });
   std::erase_if(buildings, [](const ExportBuilding& b) { return b.layers.empty(); });
   if (buildings.empty()) return;
-  if (formats.count("engine")) write_file(a.out, encode_lods_json(buildings, engine));
+  if (formats.count("engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a)));
   if (!formats.count("3dtiles") && !formats.count("3tz")) return;
   const Placement placement = place(scene, a, buildings.front().origin, log);
   const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
