@@ -35,10 +35,10 @@ void ask_hollows(const Partition& partition, const std::vector<Hollow>& hollows,
   evidence.is_told.assign(partition.cells.size(), 0);
   for (std::size_t c = 0; c < partition.cells.size(); ++c)
     for (const Hollow& hollow : hollows) {
+      if (hollow.is_whole) continue;  // rays see it all
       const Vec3& x = partition.cells[c].centroid;
       const bool is_sheet = std::any_of(hollow.sheets.begin(), hollow.sheets.end(),
                                         [&](const Region& sheet) { return contains(sheet, x); });
-      if (hollow.is_whole) continue;  // rays see it all
       const bool is_solid = is_sheet || (!hollow.solid.empty() && contains(hollow.solid, x));
       const bool is_air = !hollow.air.empty() && contains(hollow.air, x);
       if (!is_solid && !is_air) continue;

@@ -80,7 +80,6 @@ std::vector<Panel> panels_of(const Planes& planes, const std::vector<int>& among
   return panels;
 }
 
-/// What of a panel lies near a box: walls of different parts are one plane where they are flush.
 Panel part_near(Panel panel, const Box& around, double reach) {
   std::erase_if(panel.points, [&](const Vec3& x) {
     Box box;
@@ -91,7 +90,6 @@ Panel part_near(Panel panel, const Box& around, double reach) {
   return panel;
 }
 
-/// The rectangle on a plane that covers ranges along two directions.
 std::vector<Vec3> rectangle(const Vec3& normal, double offset, const Vec3& a, const Range& ra,
                             const Vec3& b, const Range& rb) {
   std::vector<Vec3> hull;

@@ -113,7 +113,7 @@ std::optional<Hollow> niche_in(const std::vector<Panel>& panels, const Gap& gap,
                  {forward, mouth + 0.15},
                  {Vec3::UnitZ(), height.high + 0.02},
                  {-Vec3::UnitZ(), -height.low + 0.02}};
-    const Range depth = sign > 0 ? Range{behind, mouth} : Range{behind, mouth};
+    const Range depth = {behind, mouth};
     if (!ceiling)
       niche.rims.push_back(level_rim(-1, height.high, gap.across, gap.width, forward, depth));
     if (!floor)

@@ -182,8 +182,7 @@ std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& pan
     tray.solid.push_back({d, edge + (is_at_house ? kReach : 0.01)});
     if (is_at_house) continue;
     if (const Panel* inner = lone_inner_side(panels, floor, d)) {
-      const double thickness = kThickness;
-      walls.push_back({-inner->plane->normal, -inner->plane->offset + thickness, thickness,
+      walls.push_back({-inner->plane->normal, -inner->plane->offset + kThickness, kThickness,
                        inner->along(beside(d)), inner->height(), d, inner->id, inner,
                        inner->plane->area});
       continue;

@@ -82,8 +82,8 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
     for (const int p : hollow.planes)
       if (!is_taken[p]) free.push_back(p);
-    int home = home_of(planes, draft, hollow, of, is_taken, free);
     if (free.empty()) continue;
+    int home = home_of(planes, draft, hollow, of, is_taken, free);
     if (home < 0) {
       home = static_cast<int>(draft.segments.size());
       draft.segments.emplace_back();
