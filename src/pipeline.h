@@ -66,7 +66,7 @@ struct Scene {
   Selection selection;
   Clustering clustering;
   double coanalysis_seconds = 0;
-  double export_seconds = 0;  ///< encoding and writing, wall clock
+  double export_seconds = 0;  ///< wall clock of what is written after the last mesh
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
   bool has_prior = false;  ///< layers come from another scene that was analysed before
 };

@@ -213,6 +213,23 @@ TEST_CASE("an interrupted run leaves whole files only") {
     CHECK(entry.path().string().find(".tmp") == std::string::npos);
 }
 
+TEST_CASE("a building's files are written when it is done, not when all are") {
+  Folder f;
+  for (const int i : {0, 1, 2, 3, 4, 5})
+    f.write("in/h" + std::to_string(i) + ".off", off(test::gable_house(10 + 2 * i, 9, 6, 3 + i)));
+  std::system((std::string(COLOD_BINARY) + " build " + (f / "in").string() + kSmall +
+               "--threads 1 -o " + (f / "out").string() + " & p=$!; for i in $(seq 30000); do " +
+               "ls " + (f / "out").string() + "/buildings/*.glb >/dev/null 2>&1 && break; " +
+               "sleep 0.001; done; kill -9 $p; wait $p 2>/dev/null")
+                  .c_str());
+  std::size_t written = 0;
+  for (const auto& entry : fs::directory_iterator(f / "out/buildings"))
+    written += entry.path().extension() == ".glb";
+  CHECK(written >= 1);
+  CHECK(written < 6);
+  CHECK(!fs::exists(f / "out/report.json"));
+}
+
 TEST_CASE("stages refuse what is newer than their input, and what is damaged") {
   Folder f;
   const std::string house = f.write("a.off", off(test::gable_house(12, 9, 6, 4)));

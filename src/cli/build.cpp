@@ -78,13 +78,14 @@ int build(const BuildArguments& a) {
   TemporaryStore store;
   Judge judge(truth, store);
   Depot& judged = truth.empty() ? static_cast<Depot&>(store) : judge;
-  Gallery gallery(inventory.building_count(), a.options.layers, judged);
+  Press press(a.output, judged);
+  Gallery gallery(inventory.building_count(), a.options.layers, press);
   Scene scene = build_scene(
       inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
-      a.options, a.output.has_no_page ? judged : gallery,
+      a.options, a.output.has_no_page ? static_cast<Depot&>(press) : gallery,
       [&](auto&&... args) { log.progress(args...); }, prior ? &*prior : nullptr);
   if (!truth.empty()) scene.consistency = tally_parts(judge.parts(), a.options.layers);
-  export_scene(scene, a.output, log);
+  press.finish(scene, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), gallery.take(scene), a.output, log);
 }

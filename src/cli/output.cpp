@@ -90,18 +90,33 @@ EngineOptions engine_options(const OutputArguments& a) {
   return {.quantization = a.quantization, .pixel_error = a.pixel_error};
 }
 
+bool writes(const OutputArguments& a, const char* format) {
+  return std::find(a.formats.begin(), a.formats.end(), format) != a.formats.end();
+}
+
 /// The files of one building.
-void write_building(const ExportBuilding& b, const std::set<std::string>& formats,
-                    const OutputArguments& a) {
+void write_building(const ExportBuilding& b, const OutputArguments& a) {
   const GlbOptions glb{
       .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
-  if (formats.count("glb")) write_file(a.out, encode_building_glb(b, glb));
-  if (formats.count("engine"))
+  if (writes(a, "glb")) write_file(a.out, encode_building_glb(b, glb));
+  if (writes(a, "engine"))
     for (const Encoded& file : encode_engine_levels(b, engine_options(a))) write_file(a.out, file);
   for (const ExportLayer& layer : b.layers) {
-    if (formats.count("obj")) write_file(a.out, encode_obj(b, layer));
-    if (formats.count("ply")) write_file(a.out, encode_ply(b, layer));
+    if (writes(a, "obj")) write_file(a.out, encode_obj(b, layer));
+    if (writes(a, "ply")) write_file(a.out, encode_ply(b, layer));
   }
+}
+
+void write_tileset(const std::vector<ExportBuilding>& buildings, const Placement& placement,
+                   const OutputArguments& a) {
+  const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
+                                                                .quantization = a.quantization,
+                                                                .target_sse = a.target_sse,
+                                                                .pixel_error = a.pixel_error,
+                                                                .placement = placement});
+  if (writes(a, "3tz")) write_file(a.out, encode_3tz(files));
+  if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
+    for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
 }
 
 }  // namespace
@@ -142,30 +157,34 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
                "report.json only, no report.html and no pictures for it");
 }
 
-void export_scene(Scene& scene, const OutputArguments& a, const Log& log) {
+Press::Press(const OutputArguments& a, Depot& depot) : arguments_(a), depot_(depot) {}
+
+void Press::put(Building& b) { depot_.put(b); }
+void Press::get(Building& b) { depot_.get(b); }
+
+void Press::drop(Building& b) {
+  depot_.drop(b);
+  Stopwatch watch(b.timings.export_);
+  ExportBuilding out = export_building(b);
+  if (out.layers.empty()) return;
+  measure_visible_errors(out);
+  write_building(out, arguments_);
+  const std::lock_guard lock(mutex_);
+  buildings_[b.source.name] = std::move(out);
+}
+
+void Press::finish(Scene& scene, const Log& log) {
   Stopwatch watch(scene.export_seconds);
-  const std::set<std::string> formats(a.formats.begin(), a.formats.end());
-  std::vector<ExportBuilding> buildings(scene.buildings.size());
-  parallel_for(buildings.size(), [&](std::size_t i) {
-    Stopwatch own(scene.buildings[i].timings.export_);
-    buildings[i] = export_building(scene.buildings[i]);
-    if (buildings[i].layers.empty()) return;
-    measure_visible_errors(buildings[i]);
-    write_building(buildings[i], formats, a);
-  });
-  std::erase_if(buildings, [](const ExportBuilding& b) { return b.layers.empty(); });
+  std::vector<ExportBuilding> buildings;
+  for (const Building& b : scene.buildings)
+    if (const auto it = buildings_.find(b.source.name); it != buildings_.end())
+      buildings.push_back(std::move(it->second));
+  buildings_.clear();
   if (buildings.empty()) return;
-  if (formats.count("engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a)));
-  if (!formats.count("3dtiles") && !formats.count("3tz")) return;
-  const Placement placement = place(scene, a, buildings.front().origin, log);
-  const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
-                                                                .quantization = a.quantization,
-                                                                .target_sse = a.target_sse,
-                                                                .pixel_error = a.pixel_error,
-                                                                .placement = placement});
-  if (formats.count("3tz")) write_file(a.out, encode_3tz(files));
-  if (formats.count("3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
-    for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
+  const OutputArguments& a = arguments_;
+  if (writes(a, "engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a)));
+  if (writes(a, "3dtiles") || writes(a, "3tz"))
+    write_tileset(buildings, place(scene, a, buildings.front().origin, log), a);
 }
 
 void report_problems(const Scene& scene, const Log& log) {

@@ -1,6 +1,8 @@
 // What `build` and `export` share: a finished scene to files, messages and an exit code.
 #pragma once
 
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -25,9 +27,25 @@ using Pictures = std::vector<std::vector<std::string>>;
 
 void add_output_options(CLI::App& app, OutputArguments& a);
 
-/// Everything but the report; says where on Earth the tileset is, if anywhere; notes the seconds
-/// in each building's timings. Throws Error{kOutput}.
-void export_scene(Scene& scene, const OutputArguments& a, const Log& log);
+/// Writes a building's files when its layers are done, while others are computed, notes the seconds
+/// in its timings and passes everything on. drop throws Error{kOutput}.
+class Press : public Depot {
+ public:
+  Press(const OutputArguments& a, Depot& depot);
+  void put(Building& building) override;
+  void get(Building& building) override;
+  void drop(Building& building) override;
+
+  /// After the last building: what is about the whole scene, in its order, and its seconds; says
+  /// where on Earth the tileset is, if anywhere. Throws Error{kOutput}.
+  void finish(Scene& scene, const Log& log);
+
+ private:
+  const OutputArguments& arguments_;
+  Depot& depot_;
+  std::mutex mutex_;
+  std::map<std::string, ExportBuilding> buildings_;
+};
 
 /// Failures as errors, the rest as warnings, one line each.
 void report_problems(const Scene& scene, const Log& log);

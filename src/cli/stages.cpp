@@ -160,24 +160,12 @@ int mesh(const StageArguments& a) {
   return exit_code(problems);
 }
 
-/// Each building's source is read again, drawn and let go in its turn.
-Pictures draw(Scene& scene, std::vector<Store>& stores, const std::vector<std::size_t>& file_of,
-              int layers) {
-  Depot memory;
-  Gallery gallery(scene.buildings.size(), layers, memory);
-  std::mutex mutex;
-  parallel_for(scene.buildings.size(), [&](std::size_t i) {
-    Building& b = scene.buildings[i];
-    {
-      const std::lock_guard lock(mutex);
-      Building kept = stores[file_of[i]].building(b.source.name);
-      b.source.mesh = std::move(kept.source.mesh);
-      b.source.cloud = std::move(kept.source.cloud);
-    }
-    gallery.drop(b);
-    drop_geometry(b);
-  });
-  return gallery.take(scene);
+/// What the pictures need besides the layers; one building at a time, so that memory stays flat.
+void bring_source(Building& b, Store& store, std::mutex& mutex) {
+  const std::lock_guard lock(mutex);
+  Building kept = store.building(b.source.name);
+  b.source.mesh = std::move(kept.source.mesh);
+  b.source.cloud = std::move(kept.source.cloud);
 }
 
 int export_files(const StageArguments& a) {
@@ -191,11 +179,20 @@ int export_files(const StageArguments& a) {
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
-  Pictures pictures;
-  if (!a.output.has_no_page) pictures = draw(scene, stores, file_of, options.layers);
-  export_scene(scene, a.output, log);
+  Depot memory;
+  Press press(a.output, memory);
+  Gallery gallery(scene.buildings.size(), options.layers, press);
+  std::mutex mutex;
+  parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    Building& b = scene.buildings[i];
+    if (a.output.has_no_page) return press.drop(b);
+    bring_source(b, stores[file_of[i]], mutex);
+    gallery.drop(b);
+    drop_geometry(b);
+  });
+  press.finish(scene, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, options, seconds.count(), std::move(pictures), a.output, log);
+  return finish(scene, options, seconds.count(), gallery.take(scene), a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
