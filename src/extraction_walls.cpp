@@ -26,6 +26,7 @@ struct Border {
   double z;   ///< metres: the higher end
   double length;
   Vec2 outward() const { return Vec2(b.y() - a.y(), a.x() - b.x()) / length; }
+  Vec2 middle() const { return 0.5 * (a + b); }
 };
 
 /// Positions of the ring that stay when nothing may move by more than kSimplify.
@@ -86,7 +87,7 @@ bool has_roof_beyond(const RayScene& rays, const Border& border, const Plane& ro
 /// A wall of the layer runs along the border, under it or a little off.
 bool is_supported(const Planes& planes, const std::vector<int>& layer_planes,
                   const Border& border) {
-  const Vec2 middle = 0.5 * (border.a + border.b), outward = border.outward();
+  const Vec2 middle = border.middle(), outward = border.outward();
   const Vec2 along(-outward.y(), outward.x());
   for (const int p : layer_planes) {
     const Plane& wall = planes.planes[p];
@@ -106,10 +107,9 @@ bool is_supported(const Planes& planes, const std::vector<int>& layer_planes,
   return false;
 }
 
-}  // namespace
-
-void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
-               CuttingPlan& plan) {
+/// Of roofs that end there with no wall of the layer under them; the longest first.
+std::vector<Border> lone_borders(const Planes& planes, const std::vector<int>& layer_planes,
+                                 const RayScene& rays) {
   std::vector<Border> borders;
   for (const int p : layer_planes) {
     const Plane& roof = planes.planes[p];
@@ -122,44 +122,59 @@ void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const
   }
   std::stable_sort(borders.begin(), borders.end(),
                    [](const Border& a, const Border& b) { return a.length > b.length; });
-  struct Wall {
-    Vec2 normal;
-    double offset;
-  };
+  return borders;
+}
+
+struct Wall {
+  Vec2 normal;
+  double offset;
+};
+
+/// Across the border; as a wall of the building, or square to it, where it is nearly so.
+Vec2 aligned_normal(const std::vector<Wall>& walls, const Border& border) {
+  const Vec2 outward = border.outward();
+  Vec2 normal = outward;
+  double closest = kParallel;
+  for (const Wall& w : walls)
+    for (const Vec2& like : {w.normal, Vec2(-w.normal.y(), w.normal.x())}) {
+      const double cosine = like.dot(outward);
+      if (std::abs(cosine) <= closest) continue;
+      closest = std::abs(cosine);
+      normal = cosine > 0 ? like : Vec2(-like);
+    }
+  return normal;
+}
+
+CutPlane cut_under(const Border& border, const Wall& wall, const Box& box) {
+  const Vec2 along(-wall.normal.y(), wall.normal.x());
+  const double reach = 0.5 * border.length + 1.0, foot = box.min.z(), top = box.max.z();
+  CutPlane cut{Vec3(wall.normal.x(), wall.normal.y(), 0), wall.offset, {}, -1};
+  for (const auto& [t, z] : {std::pair{-reach, foot}, {reach, foot}, {reach, top}, {-reach, top}}) {
+    const Vec2 p = border.middle() + t * along;
+    cut.hull.emplace_back(p.x(), p.y(), z);
+  }
+  return cut;
+}
+
+}  // namespace
+
+void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
+               CuttingPlan& plan) {
   std::vector<Wall> walls;
   for (const CuttingPlan::Limit& side : plan.limits)
     if (side.normal.head<2>().norm() > 0.99)
       walls.push_back({side.normal.head<2>().normalized(), side.offset});
-  const std::size_t sides = walls.size();
-  const double foot = plan.box.min.z(), top = plan.box.max.z();
-  for (const Border& b : borders) {
-    if (walls.size() >= sides + kMost) break;
-    const Vec2 outward = b.outward(), middle = 0.5 * (b.a + b.b);
+  const std::size_t most = walls.size() + kMost;
+  for (const Border& b : lone_borders(planes, layer_planes, rays)) {
+    if (walls.size() >= most) break;
     const bool is_known = std::any_of(walls.begin(), walls.end(), [&](const Wall& w) {
-      return std::abs(w.normal.dot(outward)) > kParallel &&
-             std::abs(w.normal.dot(middle) - w.offset) < kTogether;
+      return std::abs(w.normal.dot(b.outward())) > kParallel &&
+             std::abs(w.normal.dot(b.middle()) - w.offset) < kTogether;
     });
     if (is_known) continue;
-    // Walls of one building are mostly parallel or square to each other.
-    Vec2 normal = outward;
-    double closest = kParallel;
-    for (const Wall& w : walls)
-      for (const Vec2& like : {w.normal, Vec2(-w.normal.y(), w.normal.x())}) {
-        const double cosine = like.dot(outward);
-        if (std::abs(cosine) <= closest) continue;
-        closest = std::abs(cosine);
-        normal = cosine > 0 ? like : Vec2(-like);
-      }
-    walls.push_back({normal, normal.dot(middle)});
-    const Vec2 along(-normal.y(), normal.x());
-    const double reach = 0.5 * b.length + 1.0;
-    CutPlane cut{Vec3(normal.x(), normal.y(), 0), normal.dot(middle), {}, -1};
-    for (const auto& [t, z] :
-         {std::pair{-reach, foot}, {reach, foot}, {reach, top}, {-reach, top}}) {
-      const Vec2 p = middle + t * along;
-      cut.hull.emplace_back(p.x(), p.y(), z);
-    }
-    plan.planes.push_back(cut);
+    const Vec2 normal = aligned_normal(walls, b);
+    walls.push_back({normal, normal.dot(b.middle())});
+    plan.planes.push_back(cut_under(b, walls.back(), plan.box));
     plan.input.push_back(-1);
   }
 }

@@ -64,61 +64,74 @@ std::vector<Ledge> find_ledges(const std::vector<Panel>& panels) {
   return ledges;
 }
 
-Hollow make_dormer(const std::vector<Panel>& panels, const std::vector<Ledge>& ledges,
-                   const Ledge& first) {
+/// What planes form a dormer.
+struct Dormer {
+  const Panel* host;
+  std::vector<const Panel*> roofs, walls;
+  Vec3 out, across;    ///< down the slope; along the eave
+  Range width, depth;  ///< of all roofs along across; of the first along out
+  Range height;        ///< as far down as a front may go
+};
+
+Dormer dormer_at(const std::vector<Panel>& panels, const std::vector<Ledge>& ledges,
+                 const Ledge& first) {
   const Plane& host = *first.host->plane;
-  Hollow dormer{.kind = Hollow::Kind::kDormer, .planes = {}};
-  Box box;
-  for (const Ledge& l : ledges)
-    if (l.roof == first.roof ||
-        (l.host == first.host && is_near(l.roof->box, first.roof->box, 0.1))) {
-      dormer.planes.push_back(l.roof->id);
-      box.extend(l.roof->box);
-      dormer.solid.push_back({l.roof->plane->normal, l.roof->plane->offset});
-    }
-  const Vec3 across = beside(Vec3(host.normal.x(), host.normal.y(), 0).normalized());
-  Range width;
-  for (const Ledge& l : ledges)
-    if (std::find(dormer.planes.begin(), dormer.planes.end(), l.roof->id) != dormer.planes.end())
-      width.extend(l.roof->along(across));
-  dormer.solid.push_back({-host.normal, -host.offset});
-  dormer.solid.push_back({across, width.high});
-  dormer.solid.push_back({-across, -width.low});
-  dormer.solid.push_back({-Vec3::UnitZ(), -(box.min.z() - 2.5)});
   const Vec3 out = Vec3(host.normal.x(), host.normal.y(), 0).normalized();
-  dormer.solid.push_back({out, first.roof->along(out).high + 0.02});
-  std::vector<const Panel*> walls;
+  Dormer dormer{first.host, {}, {}, out, beside(out), {}, first.roof->along(out), {}};
+  Box box;
+  for (const Ledge& l : ledges) {
+    if (l.roof != first.roof &&
+        (l.host != first.host || !is_near(l.roof->box, first.roof->box, 0.1)))
+      continue;
+    dormer.roofs.push_back(l.roof);
+    dormer.width.extend(l.roof->along(dormer.across));
+    box.extend(l.roof->box);
+  }
+  dormer.height = {box.min.z() - 2.5, box.max.z()};
   for (const Panel& p : panels) {
     if (!p.is_wall || p.plane->area > kMostWall || !is_near(p.box, box, 0.25)) continue;
-    const Range d = relief(p, host), own = p.along(across);
-    if (d.low > -0.4 && d.high > 0.2 && own.low > width.low - 0.3 && own.high < width.high + 0.3 &&
-        p.box.max.z() < box.max.z() + 0.2)
-      dormer.planes.push_back(p.id), walls.push_back(&p);
+    const Range d = relief(p, host), own = p.along(dormer.across);
+    if (d.low > -0.4 && d.high > 0.2 && own.low > dormer.width.low - 0.3 &&
+        own.high < dormer.width.high + 0.3 && p.box.max.z() < box.max.z() + 0.2)
+      dormer.walls.push_back(&p);
   }
-  dormer.is_whole = host.normal.z() > kSteep;
-  if (dormer.is_whole) return dormer;
-  // A cheek or a front that no scan shows is as deep or as wide as the roof.
-  const Range height = {box.min.z() - 2.5, box.max.z()};
-  const Range depth = first.roof->along(out);
-  const auto has_wall = [&](const Vec3& direction, double at) {
-    bool has = false;
-    for (const Panel* w : walls) {
-      if (w->out.dot(direction) < 0.8 || std::abs(w->at(direction) - at) > kReach) continue;
-      dormer.solid.push_back({w->plane->normal, w->plane->offset + 0.01});
-      has = true;
-    }
-    return has;
-  };
-  for (const Vec3& side : {across, Vec3(-across)}) {
-    const double at = side.dot(across) > 0 ? width.high : -width.low;
-    if (has_wall(side, at)) continue;
-    const bool is_along = beside(side).dot(out) > 0;
-    dormer.rims.push_back(
-        upright_rim(side, at, is_along ? depth : Range{-depth.high, -depth.low}, height));
-  }
-  if (!has_wall(out, depth.high))
-    dormer.rims.push_back(upright_rim(out, depth.high, width, height));
   return dormer;
+}
+
+/// Bounds the dormer by its walls on one side; by a rim as deep or as wide as its roof where no
+/// scan shows one.
+void describe_side(const Dormer& dormer, const Vec3& side, double at, const Range& across,
+                   Hollow& hollow) {
+  bool has_wall = false;
+  for (const Panel* w : dormer.walls) {
+    if (w->out.dot(side) < 0.8 || std::abs(w->at(side) - at) > kReach) continue;
+    hollow.solid.push_back({w->plane->normal, w->plane->offset + 0.01});
+    has_wall = true;
+  }
+  if (!has_wall) hollow.rims.push_back(upright_rim(side, at, across, dormer.height));
+}
+
+Hollow describe(const Dormer& dormer) {
+  const Plane& host = *dormer.host->plane;
+  const auto& [low, high] = dormer.width;
+  Hollow hollow{.kind = Hollow::Kind::kDormer, .planes = {}};
+  for (const auto* parts : {&dormer.roofs, &dormer.walls})
+    for (const Panel* p : *parts) hollow.planes.push_back(p->id);
+  for (const Panel* p : dormer.roofs) hollow.solid.push_back({p->plane->normal, p->plane->offset});
+  hollow.solid.push_back({-host.normal, -host.offset});
+  hollow.solid.push_back({dormer.across, high});
+  hollow.solid.push_back({-dormer.across, -low});
+  hollow.solid.push_back({-Vec3::UnitZ(), -dormer.height.low});
+  hollow.solid.push_back({dormer.out, dormer.depth.high + 0.02});
+  hollow.is_whole = host.normal.z() > kSteep;
+  if (hollow.is_whole) return hollow;
+  for (const auto& [side, at] : {std::pair{dormer.across, high}, {Vec3(-dormer.across), -low}}) {
+    const bool is_along = beside(side).dot(dormer.out) > 0;
+    describe_side(dormer, side, at,
+                  is_along ? dormer.depth : Range{-dormer.depth.high, -dormer.depth.low}, hollow);
+  }
+  describe_side(dormer, dormer.out, dormer.depth.high, dormer.width, hollow);
+  return hollow;
 }
 
 }  // namespace
@@ -130,7 +143,7 @@ std::vector<Hollow> dormers_on(const std::vector<Panel>& panels) {
     const bool is_known = std::any_of(dormers.begin(), dormers.end(), [&](const Hollow& h) {
       return std::find(h.planes.begin(), h.planes.end(), l.roof->id) != h.planes.end();
     });
-    if (!is_known) dormers.push_back(make_dormer(panels, ledges, l));
+    if (!is_known) dormers.push_back(describe(dormer_at(panels, ledges, l)));
   }
   return dormers;
 }

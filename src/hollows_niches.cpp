@@ -65,88 +65,126 @@ bool is_behind_facade(const std::vector<Panel>& panels, const Gap& gap, const Ve
   return false;
 }
 
-std::optional<Hollow> niche_in(const std::vector<Panel>& panels, const Gap& gap, double largest) {
-  const double most_back = std::min(30.0, 0.3 * largest);
-  for (const double sign : {1.0, -1.0}) {
-    const Vec3 forward = sign * gap.forward;
-    const double back = sign > 0 ? gap.depth.low : -gap.depth.high;
-    const double mouth = sign > 0 ? gap.depth.high : -gap.depth.low;
-    std::vector<const Panel*> backs;
-    const double closed = back_share(panels, gap, forward, back, most_back, backs);
-    const Panel* ceiling = nullptr;
-    const Panel* floor = nullptr;
-    for (const Panel& p : panels) {
-      if (!p.is_ceiling && !p.is_floor) continue;
-      if (p.plane->area > most_back) continue;
-      if (overlap(p.along(gap.across), gap.width) < 0.6 * gap.width.length() ||
-          p.along(gap.across).length() > 1.3 * gap.width.length())
-        continue;
-      if (overlap(p.along(gap.forward), gap.depth) < 0.5 * gap.depth.length()) continue;
-      const double at = p.is_ceiling ? gap.height.high : gap.height.low;
-      if (std::abs(p.plane->centroid.z() - at) > 0.5) continue;
-      const Panel*& kept = p.is_ceiling ? ceiling : floor;
-      if (!kept || p.plane->area > kept->plane->area) kept = &p;
-    }
-    if (closed < 0.5 && !ceiling) continue;
-    const double cheeks = std::max(gap.left->plane->area, gap.right->plane->area);
-    if (!is_behind_facade(panels, gap, forward, mouth, std::max(2 * cheeks, 10.0))) continue;
+/// What planes form a niche.
+struct Niche {
+  Vec3 forward;
+  double most_area;  ///< of a plane of it
+  Range depth;       ///< along forward
+  Range height;
+  double closed;  ///< share of its back that walls take
+  const Panel *back = nullptr, *ceiling = nullptr, *floor = nullptr;  ///< the largest of each
 
-    Range height = gap.height;
-    if (ceiling) height.high = ceiling->plane->centroid.z();
-    if (floor) height.low = floor->plane->centroid.z();
-    const Vec3 middle = 0.5 * (gap.width.low + gap.width.high) * gap.across +
-                        0.5 * (back + mouth) * forward +
-                        0.5 * (gap.height.low + gap.height.high) * Vec3::UnitZ();
-    const double above = 0.5 * gap.height.length() + kAbove;
-    if (is_room(panels, middle)) continue;  // walls of noise
-    // Without a ceiling that is seen it may be a gap between what stands on a roof.
-    if (!ceiling && !is_room(panels, middle + above * Vec3::UnitZ())) continue;
-    const auto largest_back = std::max_element(backs.begin(), backs.end(), [](auto* x, auto* y) {
-      return x->plane->area < y->plane->area;
-    });
-    const Panel* closing = backs.empty() ? nullptr : *largest_back;
-    const double behind = closing ? closing->at(forward) : back;
-    Hollow niche{.kind = Hollow::Kind::kNiche, .planes = {gap.left->id, gap.right->id}};
-    niche.air = {{-gap.left->plane->normal, -gap.left->plane->offset},
-                 {-gap.right->plane->normal, -gap.right->plane->offset},
-                 {-forward, -behind + 0.02},
-                 {forward, mouth + 0.15},
-                 {Vec3::UnitZ(), height.high + 0.02},
-                 {-Vec3::UnitZ(), -height.low + 0.02}};
-    const Range depth = {behind, mouth};
-    if (!ceiling)
-      niche.rims.push_back(level_rim(-1, height.high, gap.across, gap.width, forward, depth));
-    if (!floor)
-      niche.rims.push_back(level_rim(1, height.low, gap.across, gap.width, forward, depth));
-    if (closed < 0.5) {
-      const Range across =
-          forward.dot(gap.forward) > 0 ? Range{-gap.width.high, -gap.width.low} : gap.width;
-      niche.rims.push_back(upright_rim(forward, behind, across, height));
-    }
-    if (ceiling) niche.planes.push_back(ceiling->id);
-    if (floor) niche.planes.push_back(floor->id);
-    niche.bounds = niche.planes;
-    if (closing) niche.bounds.push_back(closing->id);
-    Region grown = niche.air;
-    for (HalfSpace& h : grown) h.offset += 0.25;
-    for (const Panel& p : panels) {
-      if (p.plane->area > most_back) continue;
-      std::size_t in = 0;
-      for (const Vec3& v : p.plane->outline.vertices) in += contains(grown, v);
-      if (contains(grown, p.plane->centroid) &&
-          static_cast<double>(in) > 0.7 * static_cast<double>(p.plane->outline.vertices.size()))
-        niche.planes.push_back(p.id);
-    }
-    return niche;
+  /// The back's line may lie a little off the cheeks' ends.
+  double behind() const { return back ? back->at(forward) : depth.low; }
+};
+
+/// The largest ceiling (or floor) over most of a gap.
+const Panel* level_of(const std::vector<Panel>& panels, const Gap& gap, double most_area,
+                      bool Panel::*is_level, double z) {
+  const Panel* largest = nullptr;
+  for (const Panel& p : panels) {
+    if (!(p.*is_level) || p.plane->area > most_area) continue;
+    const Range across = p.along(gap.across);
+    if (overlap(across, gap.width) < 0.6 * gap.width.length() ||
+        across.length() > 1.3 * gap.width.length())
+      continue;
+    if (overlap(p.along(gap.forward), gap.depth) < 0.5 * gap.depth.length()) continue;
+    if (std::abs(p.plane->centroid.z() - z) > 0.5) continue;
+    if (!largest || p.plane->area > largest->plane->area) largest = &p;
   }
-  return std::nullopt;
+  return largest;
+}
+
+/// Air in it, and, without a ceiling that is seen, a room above: else walls of noise, or a gap
+/// between what stands on a roof.
+bool is_hollow(const std::vector<Panel>& panels, const Gap& gap, const Niche& niche) {
+  const Vec3 middle = 0.5 * (gap.width.low + gap.width.high) * gap.across +
+                      0.5 * (niche.depth.low + niche.depth.high) * niche.forward +
+                      0.5 * (gap.height.low + gap.height.high) * Vec3::UnitZ();
+  if (is_room(panels, middle)) return false;
+  const double above = 0.5 * gap.height.length() + kAbove;
+  return niche.ceiling || is_room(panels, middle + above * Vec3::UnitZ());
+}
+
+/// `sign` 1: that opens along gap.forward, −1: against it.
+std::optional<Niche> find_niche(const std::vector<Panel>& panels, const Gap& gap, double sign,
+                                double largest_area) {
+  Niche niche{sign * gap.forward, std::min(30.0, 0.3 * largest_area),
+              sign > 0 ? gap.depth : Range{-gap.depth.high, -gap.depth.low}, gap.height, 0};
+  std::vector<const Panel*> backs;
+  niche.closed = back_share(panels, gap, niche.forward, niche.depth.low, niche.most_area, backs);
+  niche.ceiling = level_of(panels, gap, niche.most_area, &Panel::is_ceiling, gap.height.high);
+  if (niche.closed < 0.5 && !niche.ceiling) return std::nullopt;
+  const double cheeks = std::max(gap.left->plane->area, gap.right->plane->area);
+  if (!is_behind_facade(panels, gap, niche.forward, niche.depth.high, std::max(2 * cheeks, 10.0)) ||
+      !is_hollow(panels, gap, niche))
+    return std::nullopt;
+  niche.floor = level_of(panels, gap, niche.most_area, &Panel::is_floor, gap.height.low);
+  if (niche.ceiling) niche.height.high = niche.ceiling->plane->centroid.z();
+  if (niche.floor) niche.height.low = niche.floor->plane->centroid.z();
+  const auto by_area = [](auto* x, auto* y) { return x->plane->area < y->plane->area; };
+  if (!backs.empty()) niche.back = *std::max_element(backs.begin(), backs.end(), by_area);
+  return niche;
+}
+
+/// The faces that no plane shows.
+std::vector<Hollow::Rim> rims_of(const Gap& gap, const Niche& niche) {
+  std::vector<Hollow::Rim> rims;
+  const Range depth = {niche.behind(), niche.depth.high};
+  if (!niche.ceiling)
+    rims.push_back(level_rim(-1, niche.height.high, gap.across, gap.width, niche.forward, depth));
+  if (!niche.floor)
+    rims.push_back(level_rim(1, niche.height.low, gap.across, gap.width, niche.forward, depth));
+  if (niche.closed < 0.5) {
+    const Range across =
+        niche.forward.dot(gap.forward) > 0 ? Range{-gap.width.high, -gap.width.low} : gap.width;
+    rims.push_back(upright_rim(niche.forward, niche.behind(), across, niche.height));
+  }
+  return rims;
+}
+
+/// Small planes that lie in a region or a little around it.
+std::vector<int> planes_in(const std::vector<Panel>& panels, Region region, double most_area) {
+  for (HalfSpace& h : region) h.offset += 0.25;
+  std::vector<int> planes;
+  for (const Panel& p : panels) {
+    if (p.plane->area > most_area || !contains(region, p.plane->centroid)) continue;
+    const std::vector<Vec3>& vertices = p.plane->outline.vertices;
+    const auto in = std::count_if(vertices.begin(), vertices.end(),
+                                  [&](const Vec3& v) { return contains(region, v); });
+    if (static_cast<double>(in) > 0.7 * static_cast<double>(vertices.size()))
+      planes.push_back(p.id);
+  }
+  return planes;
+}
+
+Hollow describe(const std::vector<Panel>& panels, const Gap& gap, const Niche& niche) {
+  Hollow hollow{.kind = Hollow::Kind::kNiche, .planes = {gap.left->id, gap.right->id}};
+  hollow.air = {{-gap.left->plane->normal, -gap.left->plane->offset},
+                {-gap.right->plane->normal, -gap.right->plane->offset},
+                {-niche.forward, -niche.behind() + 0.02},
+                {niche.forward, niche.depth.high + 0.15},
+                {Vec3::UnitZ(), niche.height.high + 0.02},
+                {-Vec3::UnitZ(), -niche.height.low + 0.02}};
+  hollow.rims = rims_of(gap, niche);
+  if (niche.ceiling) hollow.planes.push_back(niche.ceiling->id);
+  if (niche.floor) hollow.planes.push_back(niche.floor->id);
+  hollow.bounds = hollow.planes;
+  if (niche.back) hollow.bounds.push_back(niche.back->id);
+  const std::vector<int> inside = planes_in(panels, hollow.air, niche.most_area);
+  hollow.planes.insert(hollow.planes.end(), inside.begin(), inside.end());
+  return hollow;
 }
 }  // namespace
 
 std::optional<Hollow> niche_between(const std::vector<Panel>& panels, const Panel& a,
                                     const Panel& b, double largest_area) {
-  const auto gap = gap_between(a, b);
-  return gap ? niche_in(panels, *gap, largest_area) : std::nullopt;
+  const std::optional<Gap> gap = gap_between(a, b);
+  if (!gap) return std::nullopt;
+  for (const double sign : {1.0, -1.0})
+    if (const auto niche = find_niche(panels, *gap, sign, largest_area))
+      return describe(panels, *gap, *niche);
+  return std::nullopt;
 }
 
 }  // namespace colod::hollows

@@ -137,91 +137,141 @@ std::vector<Vec3> ends_of(const std::vector<TrayWall>& walls, const Panel& floor
   return ends;
 }
 
-}  // namespace
+/// A side of a tray with no wall whose outer side is seen.
+struct OpenSide {
+  Vec3 out;
+  double edge;  ///< of the floor, along out
+  enum class Closed { kByHouse, kByInnerSide, kByNothing } closed;
+};
 
-std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& panel) {
-  Ground floor{&panel, {}};
-  std::vector<TrayWall> walls = walls_of_tray(panels, floor);
-  if (walls.empty()) return std::nullopt;
-  floor.ends = ends_of(walls, panel);
-  walls = walls_of_tray(panels, floor);
-  floor.ends = ends_of(walls, panel);
-  const auto crossing = [&](const TrayWall& a, const TrayWall& b) {
-    return std::abs(a.out.dot(b.out)) < 0.8;
-  };
-  bool has_corner = false;
+/// What planes form a tray.
+struct Tray {
+  Ground floor;
+  double z;  ///< of the floor
+  std::vector<TrayWall> walls;
+  std::vector<OpenSide> open_sides;
+  Vec3 out;      ///< of its largest wall
+  Range height;  ///< from the floor's underside to the top of the walls
+};
+
+bool has_corner(const std::vector<TrayWall>& walls) {
   for (const TrayWall& a : walls)
-    for (const TrayWall& b : walls) has_corner |= crossing(a, b);
-  if (!has_corner) return std::nullopt;
-  const TrayWall main =
-      *std::max_element(walls.begin(), walls.end(),
-                        [](const TrayWall& a, const TrayWall& b) { return a.area < b.area; });
+    for (const TrayWall& b : walls)
+      if (std::abs(a.out.dot(b.out)) < 0.8) return true;
+  return false;
+}
 
-  // Above rooms a floor is a roof, and what stands around it parapets and walls.
-  if (is_room(panels, panel.plane->centroid - kBelow * Vec3::UnitZ())) return std::nullopt;
-
-  const double z = panel.plane->centroid.z();
+Range height_of(const std::vector<TrayWall>& walls, double largest_area, double z) {
   double top = 0, weight = 0, bottom = z;
   for (const TrayWall& w : walls) {
-    if (w.area < 0.3 * main.area) continue;
+    if (w.area < 0.3 * largest_area) continue;
     top += w.area * w.height.high, weight += w.area;
     if (w.height.low > z - 0.6) bottom = std::min(bottom, w.height.low);
   }
-  top /= weight;
-  if (bottom > z - 0.06) bottom = z - kSlab;
+  return {bottom > z - 0.06 ? z - kSlab : bottom, top / weight};
+}
 
-  Hollow tray{.kind = Hollow::Kind::kTray, .planes = {panel.id}};
-  tray.air = {{-Vec3::UnitZ(), -z - 0.01}, {Vec3::UnitZ(), top}};
-  for (const Vec3& d : {main.out, beside(main.out), Vec3(-main.out), Vec3(-beside(main.out))}) {
-    if (std::any_of(walls.begin(), walls.end(),
+/// Adds the sides that no wall closes, and the walls of which only the inner side is seen.
+void close_sides(const std::vector<Panel>& panels, Tray& tray) {
+  const Vec3 side = beside(tray.out);
+  std::vector<TrayWall> added;
+  for (const Vec3& d : {tray.out, side, Vec3(-tray.out), Vec3(-side)}) {
+    if (std::any_of(tray.walls.begin(), tray.walls.end(),
                     [&](const TrayWall& w) { return w.out.dot(d) > 0.8; }))
       continue;
-    const double edge = floor.along(d).high;
-    tray.air.push_back({d, edge + 0.1});
-    const bool is_at_house = is_closed_by_house(panels, floor, d, top);
-    tray.solid.push_back({d, edge + (is_at_house ? kReach : 0.01)});
-    if (is_at_house) continue;
-    if (const Panel* inner = lone_inner_side(panels, floor, d)) {
-      walls.push_back({-inner->plane->normal, -inner->plane->offset + kThickness, kThickness,
+    OpenSide open{d, tray.floor.along(d).high, OpenSide::Closed::kByNothing};
+    if (is_closed_by_house(panels, tray.floor, d, tray.height.high)) {
+      open.closed = OpenSide::Closed::kByHouse;
+    } else if (const Panel* inner = lone_inner_side(panels, tray.floor, d)) {
+      open.closed = OpenSide::Closed::kByInnerSide;
+      added.push_back({-inner->plane->normal, -inner->plane->offset + kThickness, kThickness,
                        inner->along(beside(d)), inner->height(), d, inner->id, inner,
                        inner->plane->area});
-      continue;
     }
-    tray.rims.push_back(upright_rim(d, edge, floor.along(beside(d)), {bottom, z}));
+    tray.open_sides.push_back(open);
   }
+  tray.walls.insert(tray.walls.end(), added.begin(), added.end());
+}
 
-  for (const TrayWall& w : walls) {
-    tray.planes.push_back(w.plane);
-    if (w.inner) tray.planes.push_back(w.inner->id);
-    tray.air.push_back({w.normal, w.offset - w.thickness});
-    const Range across = floor.along(beside(w.out));
-    tray.sheets.push_back({{w.normal, w.offset + 0.005},
-                           {-w.normal, -(w.offset - w.thickness - 0.005)},
-                           {beside(w.out), across.high + 0.01},
-                           {-beside(w.out), -(across.low - 0.01)},
-                           {Vec3::UnitZ(), top + 0.02},
-                           {-Vec3::UnitZ(), -(z - 0.01)}});
-    const bool is_lone = w.inner && w.inner->id == w.plane;
-    tray.rims.push_back(
-        {w.normal, w.offset,
-         rectangle(w.normal, w.offset, beside(w.out), across, Vec3::UnitZ(), {bottom, top}),
-         is_lone ? w.plane : -1});
-    if (!is_lone) {
-      const Vec3 normal = w.inner ? w.inner->plane->normal : Vec3(-w.normal);
-      const double offset = w.inner ? w.inner->plane->offset : -(w.offset - w.thickness);
-      tray.rims.push_back(
-          {normal, offset,
-           rectangle(normal, offset, beside(w.out), across, Vec3::UnitZ(), {z, top}), w.plane});
-    }
-    tray.solid.push_back({w.normal, w.offset + 0.005});
+std::optional<Tray> find_tray(const std::vector<Panel>& panels, const Panel& panel) {
+  Tray tray{{&panel, {}}, panel.plane->centroid.z(), {}, {}, {}, {}};
+  // The walls beside what is seen of the floor say how far it goes, and that which others do.
+  for (int round = 0; round < 2; ++round) {
+    tray.walls = walls_of_tray(panels, tray.floor);
+    tray.floor.ends = ends_of(tray.walls, panel);
   }
-  tray.solid.push_back({Vec3::UnitZ(), z + 0.005});
-  tray.solid.push_back({-Vec3::UnitZ(), -bottom + 0.005});
-  const Range a = floor.along(main.out), b = floor.along(beside(main.out));
-  if (!has_level(panels, false, {top - 0.1, top + 0.1}, main.out, a, beside(main.out), b))
-    tray.rims.push_back(level_rim(1, top, main.out, a, beside(main.out), b));
-  if (!has_level(panels, true, {z - 0.7, z - 0.04}, main.out, a, beside(main.out), b))
-    tray.rims.push_back(level_rim(-1, bottom, main.out, a, beside(main.out), b, panel.id));
+  if (!has_corner(tray.walls)) return std::nullopt;
+  // Above rooms a floor is a roof, and what stands around it parapets and walls.
+  if (is_room(panels, panel.plane->centroid - kBelow * Vec3::UnitZ())) return std::nullopt;
+  const TrayWall& largest =
+      *std::max_element(tray.walls.begin(), tray.walls.end(),
+                        [](const TrayWall& a, const TrayWall& b) { return a.area < b.area; });
+  tray.out = largest.out;
+  tray.height = height_of(tray.walls, largest.area, tray.z);
+  close_sides(panels, tray);
   return tray;
+}
+
+void describe_side(const Tray& tray, const OpenSide& side, Hollow& hollow) {
+  const bool is_at_house = side.closed == OpenSide::Closed::kByHouse;
+  hollow.air.push_back({side.out, side.edge + 0.1});
+  hollow.solid.push_back({side.out, side.edge + (is_at_house ? kReach : 0.01)});
+  if (side.closed == OpenSide::Closed::kByNothing)
+    hollow.rims.push_back(upright_rim(side.out, side.edge, tray.floor.along(beside(side.out)),
+                                      {tray.height.low, tray.z}));
+}
+
+void describe_wall(const Tray& tray, const TrayWall& w, Hollow& hollow) {
+  const Vec3 side = beside(w.out);
+  const Range across = tray.floor.along(side);
+  const auto [bottom, top] = tray.height;
+  hollow.planes.push_back(w.plane);
+  if (w.inner) hollow.planes.push_back(w.inner->id);
+  hollow.air.push_back({w.normal, w.offset - w.thickness});
+  hollow.solid.push_back({w.normal, w.offset + 0.005});
+  hollow.sheets.push_back({{w.normal, w.offset + 0.005},
+                           {-w.normal, -(w.offset - w.thickness - 0.005)},
+                           {side, across.high + 0.01},
+                           {-side, -(across.low - 0.01)},
+                           {Vec3::UnitZ(), top + 0.02},
+                           {-Vec3::UnitZ(), -(tray.z - 0.01)}});
+  const auto add_rim = [&](const Vec3& normal, double offset, const Range& height, int like) {
+    hollow.rims.push_back(
+        {normal, offset, rectangle(normal, offset, side, across, Vec3::UnitZ(), height), like});
+  };
+  const bool is_lone = w.inner && w.inner->id == w.plane;
+  add_rim(w.normal, w.offset, {bottom, top}, is_lone ? w.plane : -1);
+  if (is_lone) return;
+  const Range above_floor = {tray.z, top};
+  if (w.inner)
+    add_rim(w.inner->plane->normal, w.inner->plane->offset, above_floor, w.plane);
+  else
+    add_rim(-w.normal, -(w.offset - w.thickness), above_floor, w.plane);
+}
+
+/// The floor's slab, and the levels that no plane shows: on top of the walls and under the slab.
+void describe_levels(const std::vector<Panel>& panels, const Tray& tray, Hollow& hollow) {
+  const Vec3 out = tray.out, side = beside(out);
+  const Range a = tray.floor.along(out), b = tray.floor.along(side);
+  const auto [bottom, top] = tray.height;
+  hollow.solid.push_back({Vec3::UnitZ(), tray.z + 0.005});
+  hollow.solid.push_back({-Vec3::UnitZ(), -bottom + 0.005});
+  if (!has_level(panels, false, {top - 0.1, top + 0.1}, out, a, side, b))
+    hollow.rims.push_back(level_rim(1, top, out, a, side, b));
+  if (!has_level(panels, true, {tray.z - 0.7, tray.z - 0.04}, out, a, side, b))
+    hollow.rims.push_back(level_rim(-1, bottom, out, a, side, b, tray.floor.panel->id));
+}
+
+}  // namespace
+
+std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& floor) {
+  const std::optional<Tray> tray = find_tray(panels, floor);
+  if (!tray) return std::nullopt;
+  Hollow hollow{.kind = Hollow::Kind::kTray, .planes = {floor.id}};
+  hollow.air = {{-Vec3::UnitZ(), -tray->z - 0.01}, {Vec3::UnitZ(), tray->height.high}};
+  for (const OpenSide& side : tray->open_sides) describe_side(*tray, side, hollow);
+  for (const TrayWall& wall : tray->walls) describe_wall(*tray, wall, hollow);
+  describe_levels(panels, *tray, hollow);
+  return hollow;
 }
 }  // namespace colod::hollows

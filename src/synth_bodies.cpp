@@ -254,57 +254,58 @@ WingedBody add_winged_body(House& house, const RoofShape& shape, double wing_x, 
   return body;
 }
 
-ChurchBody add_church_body(House& house, const RoofShape& shape, double tower_width,
-                           double tower_height) {
-  Solid& solid = house.solid;
-  // The nave's profile is written for a ridge along x; here (x, y) are swapped through `turn`,
-  // which keeps orientation: a quarter turn that brings the gable at x = 0 to the street.
-  const double length = house.depth, across = house.width;
-  const auto turn = [&](const Vec3& p) { return Vec3(across - p.y(), p.x(), p.z()); };
-  const auto turned = [&](std::vector<Vec3> corners) {
-    for (Vec3& c : corners) c = turn(c);
-    return corners;
-  };
-  const Profile p(shape, across);
-  const double w = tower_width, y0 = (across - w) / 2, y1 = y0 + w, middle = across / 2;
-  const double top0 = p.zr + p.thickness - shape.slope * (middle - y0);
-  const auto add = [&](const std::vector<Vec3>& corners, int object) {
-    return solid.add(turned(corners), object);
-  };
-  const int tower = house.new_part("tower", "", tower_width);
-  ChurchBody body;
-  add({{0, 0, 0}, {0, y0, 0}, {0, y1, 0}, {0, across, 0}, {length, across, 0}, {length, 0, 0}},
-      kBody);
-  add({{-w, y0, 0}, {-w, y1, 0}, {0, y1, 0}, {0, y0, 0}}, tower);
-  body.main.right =
-      add({{0, 0, 0}, {length, 0, 0}, p.wall(length, false), p.wall(0, false)}, kBody);
-  body.main.left =
-      add({{length, across, 0}, {0, across, 0}, p.wall(0, true), p.wall(length, true)}, kBody);
-  // Gables: the far one whole, the near one on both sides of the tower.
-  body.main.back = add({{length, 0, 0},
-                        {length, across, 0},
-                        p.wall(length, true),
-                        p.edge(length, true, false),
-                        p.edge(length, true, true),
-                        p.ridge(length, true),
-                        p.edge(length, false, true),
-                        p.edge(length, false, false),
-                        p.wall(length, false)},
-                       kBody);
-  add(reversed({{0, 0, 0},
-                {0, y0, 0},
-                {0, y0, top0},
-                p.edge(0, false, true),
-                p.edge(0, false, false),
-                p.wall(0, false)}),
-      kBody);
-  add(reversed({{0, y1, 0},
-                {0, across, 0},
-                p.wall(0, true),
-                p.edge(0, true, false),
-                p.edge(0, true, true),
-                {0, y1, top0}}),
-      kBody);
+namespace {
+
+/// Draws a church in the coordinates of its profile: the ridge along x, the tower before x = 0.
+struct ChurchDrawing {
+  Solid& solid;
+  double length, across;  ///< metres: the nave's
+  Profile profile;
+  double y0, y1;  ///< where the tower begins and ends
+  double top0;    ///< metres: the nave's roof there
+
+  /// A quarter turn, which keeps orientation, brings the gable at x = 0 to the street.
+  int add(std::vector<Vec3> corners, int object) {
+    for (Vec3& c : corners) c = Vec3(across - c.y(), c.x(), c.z());
+    return solid.add(corners, object);
+  }
+};
+
+/// The far gable whole, the near one on both sides of the tower.
+int add_church_gables(ChurchDrawing& church) {
+  const auto& [solid, length, across, p, y0, y1, top0] = church;
+  const int back = church.add({{length, 0, 0},
+                               {length, across, 0},
+                               p.wall(length, true),
+                               p.edge(length, true, false),
+                               p.edge(length, true, true),
+                               p.ridge(length, true),
+                               p.edge(length, false, true),
+                               p.edge(length, false, false),
+                               p.wall(length, false)},
+                              kBody);
+  church.add(reversed({{0, 0, 0},
+                       {0, y0, 0},
+                       {0, y0, top0},
+                       p.edge(0, false, true),
+                       p.edge(0, false, false),
+                       p.wall(0, false)}),
+             kBody);
+  church.add(reversed({{0, y1, 0},
+                       {0, across, 0},
+                       p.wall(0, true),
+                       p.edge(0, true, false),
+                       p.edge(0, true, true),
+                       {0, y1, top0}}),
+             kBody);
+  return back;
+}
+
+/// Both roofs, each with its edge board and the underside of its overhang.
+std::vector<int> add_church_roofs(ChurchDrawing& church) {
+  const Profile& p = church.profile;
+  const double length = church.length;
+  std::vector<int> roofs;
   for (bool is_back : {false, true}) {
     std::vector<Vec3> roof = {p.edge(0, is_back, true), p.edge(length, is_back, true),
                               p.ridge(length, true), p.ridge(0, true)};
@@ -312,24 +313,54 @@ ChurchBody add_church_body(House& house, const RoofShape& shape, double tower_wi
                                p.edge(length, is_back, true), p.edge(0, is_back, true)};
     std::vector<Vec3> under = {p.wall(0, is_back), p.wall(length, is_back),
                                p.edge(length, is_back, false), p.edge(0, is_back, false)};
-    body.main.roofs.push_back(add(is_back ? reversed(roof) : roof, kRoof));
-    add(is_back ? reversed(board) : board, kRoof);
-    add(is_back ? reversed(under) : under, kRoof);
+    roofs.push_back(church.add(is_back ? reversed(roof) : roof, kRoof));
+    church.add(is_back ? reversed(board) : board, kRoof);
+    church.add(is_back ? reversed(under) : under, kRoof);
   }
-  // The tower: three walls from the ground, the fourth from the nave's roof.
-  const double h = tower_height;
-  body.tower.front = add({{-w, y1, 0}, {-w, y0, 0}, {-w, y0, h}, {-w, y1, h}}, tower);
-  body.tower.right = add({{-w, y0, 0}, {0, y0, 0}, {0, y0, h}, {-w, y0, h}}, tower);
-  body.tower.left = add({{0, y1, 0}, {-w, y1, 0}, {-w, y1, h}, {0, y1, h}}, tower);
-  body.tower.back =
-      add({{0, y0, top0}, p.ridge(0, true), {0, y1, top0}, {0, y1, h}, {0, y0, h}}, tower);
+  return roofs;
+}
+
+/// Three walls from the ground, the fourth from the nave's roof.
+Body add_tower(ChurchDrawing& church, double w, double h, int tower) {
+  const auto& [solid, length, across, p, y0, y1, top0] = church;
+  Body body;
+  body.front = church.add({{-w, y1, 0}, {-w, y0, 0}, {-w, y0, h}, {-w, y1, h}}, tower);
+  body.right = church.add({{-w, y0, 0}, {0, y0, 0}, {0, y0, h}, {-w, y0, h}}, tower);
+  body.left = church.add({{0, y1, 0}, {-w, y1, 0}, {-w, y1, h}, {0, y1, h}}, tower);
+  body.back =
+      church.add({{0, y0, top0}, p.ridge(0, true), {0, y1, top0}, {0, y1, h}, {0, y0, h}}, tower);
   const double x0 = across - y1, x1 = across - y0;  // after the turn
   const auto plan = rectangle(x0, -w, x1, 0);
   const auto eaves = offset(plan, 0.25);
   add_soffit(solid, plan, eaves, h);
   add_walls(solid, eaves, h, h + 0.25, kRoof);
-  body.tower.roofs =
+  body.roofs =
       add_hips(solid, eaves[0].x(), eaves[0].y(), eaves[2].x(), eaves[2].y(), h + 0.25, 2.2, kRoof);
+  return body;
+}
+
+}  // namespace
+
+ChurchBody add_church_body(House& house, const RoofShape& shape, double tower_width,
+                           double tower_height) {
+  const double length = house.depth, across = house.width, w = tower_width;
+  const double y0 = (across - w) / 2, y1 = y0 + w;
+  const Profile p(shape, across);
+  ChurchDrawing church{
+      house.solid, length, across, p, y0, y1, p.zr + p.thickness - shape.slope * (across / 2 - y0)};
+  const int tower = house.new_part("tower", "", tower_width);
+  ChurchBody body;
+  church.add(
+      {{0, 0, 0}, {0, y0, 0}, {0, y1, 0}, {0, across, 0}, {length, across, 0}, {length, 0, 0}},
+      kBody);
+  church.add({{-w, y0, 0}, {-w, y1, 0}, {0, y1, 0}, {0, y0, 0}}, tower);
+  body.main.right =
+      church.add({{0, 0, 0}, {length, 0, 0}, p.wall(length, false), p.wall(0, false)}, kBody);
+  body.main.left = church.add(
+      {{length, across, 0}, {0, across, 0}, p.wall(0, true), p.wall(length, true)}, kBody);
+  body.main.back = add_church_gables(church);
+  body.main.roofs = add_church_roofs(church);
+  body.tower = add_tower(church, w, tower_height, tower);
   return body;
 }
 
