@@ -24,6 +24,7 @@ constexpr double kRise = 1.01;          // a parent's error is at least this tim
 constexpr double kLeastError = 1e-3;    // metres; of a tile that is finer than its errors tell
 constexpr double kFinestShare = 0.3;    // of the bound: a rounding that shows only close by
 constexpr double kStandInShare = 0.02;  // of the least error of a tile's stand-ins
+constexpr double kFarShare = 0.05;      // of the finest tiles' bytes, at the root
 constexpr std::size_t kMostNames = 4;   // of buildings behind one stand-in, in its name
 
 /// A tile's GLB and what the tileset says of it.
@@ -140,6 +141,28 @@ void encode_content(const Scene& scene, Content& content) {
   content.box.extend(from_gltf(seen.max));
 }
 
+/// Where the root is more than a share of the finest tiles, stand-ins merge until it is not. Scenes
+/// too small for a single box's GLB, which is some 2 kB, keep what they have.
+void lighten_root(Scene& scene, TilePlan& plan) {
+  Content& root = scene.contents.front();
+  double allowed = 0;
+  for (const Content& content : scene.contents)
+    if (content.tile->children.empty())
+      allowed += kFarShare * static_cast<double>(content.file.bytes.size());
+  std::size_t most = plan.farthest.size();
+  const auto is_light = [&] { return static_cast<double>(root.file.bytes.size()) <= allowed; };
+  const auto show_merged = [&](std::size_t count) {
+    show_farthest(plan, merge_stand_ins(plan.farthest, count));
+    root.box = {}, root.eps = 0;
+    encode_content(scene, root);
+  };
+  if (is_light()) return;
+  show_merged(1);
+  if (!is_light()) return show_merged(most);
+  do show_merged(most -= (most + 7) / 8);
+  while (!is_light());
+}
+
 /// At the middle of the parts' foot, to the metre.
 TileFrame frame_of(const Scene& scene, const PlannedTile& tile) {
   Box box;
@@ -249,12 +272,13 @@ void check(const std::vector<ExportBuilding>& buildings) {
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
                                     const TilesOptions& options) {
   check(buildings);
-  const TilePlan plan = plan_tiles(buildings);
+  TilePlan plan = plan_tiles(buildings);
   Scene scene{buildings, options, {}, {}, {}};
   scene.frames.push_back(frame_of(scene, plan.root));
   list_contents(scene, plan.root, 0, "");
   parallel_for(scene.contents.size(),
                [&](std::size_t i) { encode_content(scene, scene.contents[i]); });
+  lighten_root(scene, plan);
   std::size_t next = 0;
   Tile root = assemble(scene, next);
   const TileFrame& frame = scene.frames.front();

@@ -17,7 +17,16 @@ constexpr std::size_t kMostChildren = 16;  // REPLACE waits for all children of 
 constexpr std::size_t kMostInCell = 256;   // buildings
 constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm about its middle
 constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
+constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
 constexpr std::size_t kMostStandIns = 64;  // in one tile
+
+void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<StandIn>& boxes) {
+  tile.parts.clear();
+  for (const StandIn& box : boxes) {
+    meshes.push_back(mesh_of(box));
+    tile.parts.push_back({box.buildings, -1, &meshes.back(), box.origin, box.error});
+  }
+}
 
 class Planner {
  public:
@@ -33,8 +42,7 @@ class Planner {
   TilePlan plan() {
     std::vector<int> all(buildings_.size());
     std::iota(all.begin(), all.end(), 0);
-    std::vector<StandIn> shown;
-    plan_.root = far_tile(all, "root", false, shown);
+    plan_.root = far_tile(all, "root", false, plan_.farthest);
     return std::move(plan_);
   }
 
@@ -61,10 +69,7 @@ class Planner {
       }
     }
     shown = merge_stand_ins(std::move(shown), budget(group));
-    for (const StandIn& box : shown) {
-      plan_.stand_ins.push_back(mesh_of(box));
-      tile.parts.push_back({box.buildings, -1, &plan_.stand_ins.back(), box.origin, box.error});
-    }
+    show(plan_.stand_ins, tile, shown);
     return tile;
   }
 
@@ -103,8 +108,12 @@ class Planner {
     double finest = 0;
     for (const int b : group)
       finest += static_cast<double>(buildings_[b].layers.back().mesh.triangles.size());
-    const auto boxes = static_cast<std::size_t>(kStandInShare * finest / kStandInTriangles);
-    return std::clamp<std::size_t>(boxes, 1, kMostStandIns);
+    const auto boxes = [&](double share) {
+      return static_cast<std::size_t>(share * finest / kStandInTriangles);
+    };
+    const std::size_t own = std::min({group.size(), kMostChildren, boxes(kMostShare)});
+    return std::clamp<std::size_t>(boxes(kStandInShare), std::max<std::size_t>(own, 1),
+                                   kMostStandIns);
   }
 
   Vec3 extent(const std::vector<int>& group) const {
@@ -148,6 +157,10 @@ class Planner {
 
 TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings) {
   return Planner(buildings).plan();
+}
+
+void show_farthest(TilePlan& plan, const std::vector<StandIn>& boxes) {
+  show(plan.stand_ins, plan.root, boxes);
 }
 
 }  // namespace colod

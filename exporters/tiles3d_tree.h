@@ -28,6 +28,7 @@ struct PlannedTile {
 struct TilePlan {
   std::deque<PolygonMesh> stand_ins;  ///< what parts without a layer point to
   PlannedTile root;
+  std::vector<StandIn> farthest;  ///< what the root shows
 };
 
 /// From the root down: stand-ins, each tile's lighter than those of its children together; below
@@ -37,5 +38,8 @@ struct TilePlan {
 /// buildings and a kilometre become cells when the whole is larger. `buildings` not empty, each
 /// with a layer; the plan points into them.
 TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings);
+
+/// The root shows these instead of its stand-ins.
+void show_farthest(TilePlan& plan, const std::vector<StandIn>& boxes);
 
 }  // namespace colod
