@@ -47,29 +47,32 @@ class Planner {
   }
 
  private:
-  /// Shows stand-ins; `shown` receives them.
+  /// Shows stand-ins; what is in `below` is of other tiles, and the tile's own join it.
   PlannedTile far_tile(const std::vector<int>& group, const std::string& name, bool is_in_cell,
-                       std::vector<StandIn>& shown) {
+                       std::vector<StandIn>& below) {
     PlannedTile tile{.name = name, .parts = {}, .children = {}};
     tile.is_cell = !is_in_cell && is_cell(group);
     is_in_cell |= tile.is_cell;
+    std::vector<StandIn> shown;
+    const auto add_near = [&](const std::vector<int>& part, const std::string& child) {
+      tile.children.push_back(near_tile(part, child));
+      for (const int b : part) shown.push_back(singles_[b]);
+    };
     if (group.size() <= kMostChildren) {
-      tile.children.push_back(near_tile(group, name + ".0"));
-      for (const int b : group) shown.push_back(singles_[b]);
+      add_near(group, name + ".0");
     } else {
       int number = 0;
       for (const std::vector<int>& part : quarter(group)) {
         const std::string child = name + "." + std::to_string(number++);
-        if (part.size() > kMostChildren || !is_in_cell) {
+        if (part.size() > kMostChildren || !is_in_cell)
           tile.children.push_back(far_tile(part, child, is_in_cell, shown));
-        } else {
-          tile.children.push_back(near_tile(part, child));
-          for (const int b : part) shown.push_back(singles_[b]);
-        }
+        else
+          add_near(part, child);
       }
     }
     shown = merge_stand_ins(std::move(shown), budget(group));
     show(plan_.stand_ins, tile, shown);
+    below.insert(below.end(), shown.begin(), shown.end());
     return tile;
   }
 

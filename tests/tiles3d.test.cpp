@@ -2,6 +2,7 @@
 #include "../exporters/tiles3d.h"
 
 #include <catch2/catch.hpp>
+#include <functional>
 #include <numeric>
 
 #include "../exporters/deviation.h"
@@ -202,6 +203,23 @@ TEST_CASE("a building without detail has a box far away all the same") {
   const std::vector<Encoded> files = encode_tileset(one);
   CHECK(triangles_of(find(files, "tiles/root.glb")) == kStandInTriangles);
   CHECK(walk(files).size() == 4);
+}
+
+TEST_CASE("every tile shows the buildings below it, each once, and no other") {
+  const std::vector<ExportBuilding> buildings = street(300);
+  const TilePlan plan = plan_tiles(buildings);
+  const std::function<std::set<int>(const PlannedTile&)> check = [&](const PlannedTile& tile) {
+    std::vector<int> shown;
+    for (const TilePart& part : tile.parts)
+      shown.insert(shown.end(), part.buildings.begin(), part.buildings.end());
+    const std::set<int> own(shown.begin(), shown.end());
+    CHECK(own.size() == shown.size());
+    std::set<int> below;
+    for (const PlannedTile& child : tile.children) below.merge(check(child));
+    CHECK((tile.children.empty() || below == own));
+    return own;
+  };
+  CHECK(check(plan.root).size() == 300);
 }
 
 TEST_CASE("beyond 256 buildings cells are tilesets of their own; errors fall, boxes nest") {

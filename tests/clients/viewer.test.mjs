@@ -56,10 +56,58 @@ async function colourfulness(page) {
   }, picture);
 }
 
-for (const folder of ['local', 'earth']) {
+/** Calls that draw on the page's canvas while `act` runs and a second after. */
+async function drawn(page, act) {
+  await page.evaluate(() => {
+    if (window.drawn !== undefined) return;
+    window.drawn = 0;
+    for (const name of ['drawArrays', 'drawElements']) {
+      const draw = WebGL2RenderingContext.prototype[name];
+      WebGL2RenderingContext.prototype[name] = function (...a) { ++window.drawn; return draw.apply(this, a); };
+    }
+  });
+  const before = await page.evaluate(() => window.drawn);
+  await act();
+  await page.waitForTimeout(1000);
+  return await page.evaluate(() => window.drawn) - before;
+}
+
+/** Nothing is drawn for a second: throws unless that comes within a minute. */
+async function idle(page) {
+  for (let i = 0; i < 60; ++i) if (await drawn(page, () => {}) === 0) return;
+  throw new Error('the page draws on and on');
+}
+
+const scenes = {
+  local: { finer: 4, place: /^local/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
+  earth: { finer: 4, place: /UTM zone 32N/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
+  street: { finer: 8, place: /^local/, name: /^b\d+$/, source: /source\s+b\d+\.obj/ },  // 300 houses: external tilesets
+};
+
+test('an idle page draws nothing, and draws when something changes', async (t) => {
+  const { page, errors } = await view(t, 'local');
+  await idle(page);
+  const changes = {
+    wheel: async () => { await page.mouse.move(420, 240); await page.mouse.wheel(0, -200); },
+    turn: async () => { await page.mouse.move(420, 240); await page.mouse.down(); await page.mouse.move(470, 250, { steps: 3 }); await page.mouse.up(); },
+    colour: () => page.check('input[value=building]'),
+    edges: () => page.uncheck('#edges'),
+    error: () => page.fill('#error', '1'),
+    home: () => page.click('#home'),
+    pick: () => pick(page),
+    size: () => page.setViewportSize({ width: 700, height: 500 }),
+  };
+  for (const [name, act] of Object.entries(changes)) {
+    assert.ok(await drawn(page, act) > 0, `${name} draws nothing`);
+    await idle(page);
+  }
+  assert.deepEqual(errors, []);
+});
+
+for (const [folder, expected] of Object.entries(scenes)) {
   test(`the viewer shows, colours, refines and explains (${folder})`, async (t) => {
     const { page, errors } = await view(t, folder);
-    assert.match(await page.innerText('#place'), folder === 'earth' ? /UTM zone 32N/ : /^local/);
+    assert.match(await page.innerText('#place'), expected.place);
     const plain = await colourfulness(page);
     await screenshot(page, `viewer-${folder}`);
 
@@ -80,14 +128,14 @@ for (const folder of ['local', 'earth']) {
     await ready(page);
     const fine = await counter(page, 'triangles');
     await screenshot(page, `viewer-${folder}-fine`);
-    assert.ok(coarse > 0 && fine > 4 * coarse, `${coarse} triangles at 256 pixels, ${fine} at 1`);
+    assert.ok(coarse > 0 && fine > expected.finer * coarse, `${coarse} triangles at 256 pixels, ${fine} at 1`);
     assert.match(await page.innerText('#layers'), /layer 2/);
     for (const id of ['frames', 'tiles', 'bytes']) assert.ok(await counter(page, id) > 0, id);
 
     await pick(page);
-    assert.match(await page.innerText('#building h1'), /^house_\d\d$/);
+    assert.match(await page.innerText('#building h1'), expected.name);
     const told = await page.innerText('#building table');
-    for (const row of [/layer\s+2/, /error\s+\d+\.\d{3} m/, /source\s+houses\/house_\d\d\.obj/, /faces\s+[\d,]+/]) assert.match(told, row);
+    for (const row of [/layer\s+2/, /error\s+\d+\.\d{3} m/, expected.source, /faces\s+[\d,]+/]) assert.match(told, row);
     await screenshot(page, `viewer-${folder}-picked`);
     await page.keyboard.press('Escape');
     assert.equal(await page.isVisible('#building'), false);

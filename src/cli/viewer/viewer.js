@@ -20,7 +20,9 @@ sun.position.set(-0.5, 1, 0.75);
 scene.add(new HemisphereLight('#eaf3ff', '#8f8a80', 1.7), sun);
 
 let radius = 100, errorScale = 0, selected = null, pressed = null;
-let bytes = 0, frames = 0, since = performance.now(), calm = 0;  // counters; calm: frames with nothing to load
+let bytes = 0, frames = 0, since = performance.now();  // counters
+let next = 0, calm = 0;  // the frame that is asked for; frames in which nothing has changed
+const kCalm = 3;
 
 const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) => {
   radius = 0.5 * box.getSize(new Vector3()).length();
@@ -32,6 +34,8 @@ const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) =>
   home();
 });
 scene.add(tiles.group);
+for (const event of ['needs-update', 'needs-render', 'tile-visibility-change']) tiles.addEventListener(event, wake);
+controls.addEventListener('change', wake);
 tiles.addEventListener('load-model', (tile) => { dress(tile.scene); paint(tile.scene, settings.colour.value, selected); });
 tiles.addEventListener('dispose-model', (tile) => undress(tile.scene));
 tiles.addEventListener('load-error', ({ url, error }) => {
@@ -53,6 +57,7 @@ function ground(size) {
 function home() {
   controls.target.set(0, 0, 0);
   camera.position.set(-0.55, 0.75, 1).setLength(2.1 * radius);
+  wake();
 }
 
 /** The slider is logarithmic: 1 … 256 pixels. */
@@ -73,6 +78,7 @@ const short = (number) => number.toLocaleString('en', { maximumSignificantDigits
 function repaint() {
   tiles.forEachLoadedModel((model) => paint(model, settings.colour.value, selected));
   showLayers();
+  wake();
 }
 
 /** What stands under a pointer: a hit of the raycaster, or nothing. */
@@ -130,6 +136,7 @@ function showLayers() {
 
 new PerformanceObserver((list) => {
   for (const entry of list.getEntries()) if (entry.name.includes('/out/')) bytes += entry.encodedBodySize;
+  countBytes();
 }).observe({ type: 'resource', buffered: true });
 
 function count(id, value, text = value.toLocaleString('en')) {
@@ -137,12 +144,14 @@ function count(id, value, text = value.toLocaleString('en')) {
   $(id).textContent = text;
 }
 
+const countBytes = () => count('bytes', bytes, Math.round(bytes / 1000).toLocaleString('en'));
+
 function countEverything() {
   const now = performance.now();
   count('frames', Math.round(1000 * frames / (now - since)));
   count('tiles', tiles.visibleTiles.size);
   count('triangles', visibleMeshes().reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0));
-  count('bytes', bytes, Math.round(bytes / 1000).toLocaleString('en'));
+  countBytes();
   frames = 0;
   since = now;
   showLayers();
@@ -150,23 +159,32 @@ function countEverything() {
 }
 
 function setState(state) {
-  if (state === 'loading') calm = 0;
+  if (state === 'loading') wake();
   if (state === document.body.dataset.state) return;
   document.body.dataset.state = state;
   if (state !== 'failed') $('state').textContent = state === 'loading' ? 'loading …' : '';
 }
 
-/** `ready` when nothing was left to load for ten frames. */
+/** `ready` when nothing was left to load for some frames. */
 function watch() {
-  if (document.body.dataset.state === 'failed') return;
-  if (!tiles.root || tiles.isLoading) setState('loading');
-  else if (++calm === 10) {
+  if (document.body.dataset.state === 'failed') ++calm;
+  else if (!tiles.root || tiles.isLoading) setState('loading');
+  else if (++calm === kCalm) {
     countEverything();
     setState('ready');
   }
 }
 
+/** Something changed: draws until all has been calm for some frames, and then no more. */
+function wake() {
+  calm = 0;
+  if (next) return;
+  next = requestAnimationFrame(frame);
+  if (frames === 0) since = performance.now();
+}
+
 function frame() {
+  next = 0;
   controls.update();
   const distance = camera.position.distanceTo(controls.target);
   camera.near = Math.max(0.05, distance / 200);
@@ -178,6 +196,7 @@ function frame() {
   ++frames;
   watch();
   if (performance.now() > since + 500) countEverything();
+  if (calm < kCalm) next ||= requestAnimationFrame(frame);
 }
 
 new ResizeObserver(() => {
@@ -185,7 +204,9 @@ new ResizeObserver(() => {
   renderer.setSize(innerWidth, innerHeight, false);
   camera.aspect = innerWidth / innerHeight;
   tiles.setResolutionFromRenderer(camera, renderer);
+  wake();
 }).observe(canvas);
+canvas.addEventListener('webglcontextrestored', wake);
 
 canvas.addEventListener('pointerdown', (event) => { pressed = event; });
 canvas.addEventListener('pointerup', (event) => {
@@ -199,12 +220,13 @@ canvas.addEventListener('dblclick', (event) => {
   if (!hit) return;
   camera.position.lerp(hit.point, 0.6);
   controls.target.copy(hit.point);
+  wake();
 });
 addEventListener('keydown', ({ key }) => { if (key === 'Escape') select(null); });
 settings.addEventListener('submit', (event) => event.preventDefault());
 for (const choice of settings.colour) choice.addEventListener('input', repaint);
-$('edges').addEventListener('input', () => showEdges($('edges').checked));
+$('edges').addEventListener('input', () => { showEdges($('edges').checked); wake(); });
 $('error').addEventListener('input', readError);
 $('home').addEventListener('click', home);
 $('close').addEventListener('click', () => select(null));
-renderer.setAnimationLoop(frame);
+wake();
