@@ -39,16 +39,24 @@ std::optional<Hollow> shaft_between(const std::vector<Panel>& panels, const Pane
                  {-Vec3::UnitZ(), -height.low}};
   Region grown = shaft.solid;
   for (HalfSpace& h : grown) h.offset += 0.2;
-  bool has_top = false, has_side[2] = {false, false};
+  const Panel* top = nullptr;
+  bool has_side[2] = {false, false};
   for (const Panel& p : panels) {
     if (!reaches_into(p, grown)) continue;
-    if (p.plane->normal.z() > 0.3 && p.box.max.z() > height.high - 0.5) has_top = true;
+    if (p.plane->normal.z() > 0.3 && p.box.max.z() > height.high - 0.5) top = &p;
     if (!p.is_wall) continue;
     for (const int k : {0, 1})
       if (p.out.dot(k ? side : Vec3(-side)) > kAlike) has_side[k] = true;
   }
-  if (has_top) return std::nullopt;
-  shaft.rims.push_back(level_rim(1, height.high, a.out, thick, side, across));
+  if (top) {  // one side may lack all the same, but a slope is a dormer's, and a room behind a
+              // bay's
+    if (!top->is_floor || has_side[0] == has_side[1]) return std::nullopt;
+    const double beyond = has_side[1] ? across.low - kReach : across.high + kReach;
+    if (is_room(panels, 0.5 * (thick.low + thick.high) * a.out + beyond * side +
+                            0.5 * (height.low + height.high) * Vec3::UnitZ()))
+      return std::nullopt;
+  }
+  if (!top) shaft.rims.push_back(level_rim(1, height.high, a.out, thick, side, across));
   shaft.rims.push_back(level_rim(-1, height.low, a.out, thick, side, across));
   for (const int k : {0, 1}) {
     if (has_side[k]) continue;

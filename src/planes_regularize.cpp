@@ -19,6 +19,9 @@ namespace {
 constexpr double kMergeAngleCosine = 0.9781;  // 12°
 constexpr double kMergeRms = 0.6;             // of the growing distance
 constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet
+constexpr double kCrossedRms = 0.75;          // of the growing distance: one that a larger crosses,
+constexpr double kCentred = 0.15;             // of its RMS: its mean distance from that,
+constexpr double kCrossedArea = 0.25;         // of the larger one's area
 constexpr double kMoveRms = 1.0 / 3;          // of the growing distance: what aligning may cost
 constexpr double kOffsetWidth = 0.6;          // of the growing distance
 constexpr double kLeastOffset = 0.05;  // metres: parallel planes closer than this are one …
@@ -39,6 +42,17 @@ Region joined(const Region& a, const Region& b) {
   return r;
 }
 
+/// Noise tilts a part of a wall: what lies on both sides of a much larger region's plane alike may
+/// be farther from it than what is beside it, such as a recess or a slope of its own. RMS over the
+/// limit; infinite when it lies otherwise.
+double crossing_cost(const Region& large, const Region& small, double distance) {
+  const double rms = small.moments.rms(large.normal, large.offset);
+  const double mean = large.normal.dot(small.moments.mean()) - large.offset;
+  return std::abs(mean) <= kCentred * rms && small.area <= kCrossedArea * large.area
+             ? rms / (kCrossedRms * distance)
+             : std::numeric_limits<double>::infinity();
+}
+
 /// What joining would cost (RMS over the limit, ≤ 1 is allowed); infinite when out of question.
 double merge_cost(const Region& a, const Region& b, double distance) {
   const double none = std::numeric_limits<double>::infinity();
@@ -50,7 +64,10 @@ double merge_cost(const Region& a, const Region& b, double distance) {
   both.add(b.moments);
   const Vec3 n = both.fit(a.area >= b.area ? a.normal : b.normal);
   const double d = n.dot(both.mean());
-  return std::max(a.moments.rms(n, d), b.moments.rms(n, d)) / limit;
+  const double cost = std::max(a.moments.rms(n, d), b.moments.rms(n, d)) / limit;
+  if (along < 0) return cost;
+  return std::min(cost,
+                  a.area >= b.area ? crossing_cost(a, b, distance) : crossing_cost(b, a, distance));
 }
 
 /// Leader of every region after joining; pairs are (cost, a, b), cheapest first, each region joins

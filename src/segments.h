@@ -17,8 +17,9 @@ struct SegmentOptions {
   VisibilityOptions visibility;
 };
 
-/// What planes enclose only in part is a kind of its own (hollows.h).
-enum class Form { kPlain, kTray, kNiche, kDormer, kBay };
+/// What planes enclose only in part is a kind of its own (hollows.h), and so is what makes the
+/// building much taller: a spire.
+enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire };
 
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one

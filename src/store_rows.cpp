@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 
 Form form_of(std::int64_t stored) {
-  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay})
+  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kSpire})
     if (stored == static_cast<int>(form)) return form;
   return Form::kPlain;
 }

@@ -87,6 +87,20 @@ TEST_CASE("a chimney without its top is a shaft") {
   for (const Hollow& h : found) CHECK(h.kind == Hollow::Kind::kShaft);
 }
 
+TEST_CASE("a chimney may lack one side; a bay or a dormer has a room behind its own") {
+  const Vec3 low(2, 2, 7), high(3, 2.6, 8.5);
+  const Mesh open = without(join(plain_house(), box_mesh(low, high)), {3, 2, 7}, high);
+  const auto found = hollows_of(open);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kShaft);
+  CHECK(found[0].rims.size() == 2);  // the side and the foot
+  CHECK(contains(found[0].solid, {2.9, 2.3, 8}));
+  CHECK(signed_volume(mesh_of(open).mesh()) == Approx(560 + 1 * 0.6 * 1.5).margin(0.05));
+  const Mesh bay =
+      without(join(plain_house(), box_mesh({3, -1, 2}, {5, 0, 5})), {3, 0, 2}, {5, 0, 5});
+  for (const Hollow& h : hollows_of(bay)) CHECK(h.kind == Hollow::Kind::kBay);
+}
+
 TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   const auto found = hollows_of(dormer_house());
   REQUIRE(found.size() == 1);

@@ -27,6 +27,12 @@ inline Mesh sheet_with_hole(double size, double hole) {
   return m;
 }
 
+/// An upright rectangle over a–b, `height` high.
+inline Mesh sheet(const Vec3& a, const Vec3& b, double height) {
+  const Vec3 up(0, 0, height);
+  return {{a, b, b + up, a + up}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
 /// Two walls of length × height that meet at the z axis, in 0.2 m squares, displaced at random.
 inline Mesh noisy_corner(double length, double height, double noise) {
   const double step = 0.2;

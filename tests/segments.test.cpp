@@ -9,6 +9,7 @@
 #include "../src/segments_aggregation.h"
 #include "../src/segments_assignment.h"
 #include "../src/segments_rules.h"
+#include "meshes.h"
 #include "segments_helpers.h"
 
 using namespace colod;
@@ -327,4 +328,16 @@ TEST_CASE("coverage counts voxels of two grids by who encloses them") {
   REQUIRE(coverage[1].share == 1);
   REQUIRE(coverage[2].segments == std::vector<int>{1});
   REQUIRE(coverage[2].share == 7);
+}
+
+TEST_CASE("what stands a tenth of the diagonal above all larger segments is a spire") {
+  for (const double height : {6.0, 1.0}) {
+    Planes planes = detect_planes(
+        as_source(join(box_mesh({0, 0, 0}, {10, 8, 7}), box_mesh({2, 2, 7}, {5, 5, 7 + height}))));
+    const Segments s = build_segments(planes, coarse());
+    const auto spires = std::count_if(s.segments.begin(), s.segments.end(),
+                                      [](const Segment& g) { return g.form == Form::kSpire; });
+    CHECK(spires == (height > 2 ? 1 : 0));
+    CHECK(s.segments[0].form == Form::kPlain);
+  }
 }
