@@ -219,12 +219,11 @@ void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
           const SelectionOptions& options, Selection& result) {
   const double least = options.main_share;
   std::vector<std::vector<double>> shares;
-  for (const SelectionBuilding& b : buildings) {
-    shares.push_back(voxel_shares(b));
-    for (std::size_t s = 0; s < shares.back().size(); ++s)
-      if (b.segments[s].form == Form::kSpire) shares.back()[s] *= kSpireWeight;
-  }
+  for (const SelectionBuilding& b : buildings) shares.push_back(voxel_shares(b));
   decide_together(buildings, least, options.eta, shares);
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    for (std::size_t s = 0; s < shares[i].size(); ++s)
+      if (buildings[i].segments[s].form == Form::kSpire) shares[i][s] *= kSpireWeight;
   std::size_t next = 0;
   for (std::size_t i = 0; i < buildings.size(); ++i) {
     if (buildings[i].segments.empty()) continue;

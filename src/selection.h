@@ -25,8 +25,9 @@ struct SelectionOptions {
   int exact_segments = 40;  ///< up to this many segments that layer 0 could do without, in all, the
                             ///< whole program goes to lp_solve
   double main_share = 0.02;  ///< robust: after the optimum segments that enclose at least this
-                             ///< share of their building's voxels join layer 0, and lesser ones
-                             ///< leave it while f_r > 0.95 holds; 0: the optimum as it is
+                             ///< share of their building's voxels (a spire: a quarter of it) join
+                             ///< layer 0, and lesser ones leave it while f_r > 0.95 holds; 0: the
+                             ///< optimum as it is
   double gap = 0.001;  ///< good enough: stop as soon as the gap is proven to be no more; up to
                        ///< exact_segments the optimum is proven whatever this is
   double gap_warning = 0.05;      ///< a greater gap is warned of
