@@ -19,13 +19,14 @@ const sun = new DirectionalLight('#fff4e0', 2);
 sun.position.set(-0.5, 1, 0.75);
 scene.add(new HemisphereLight('#eaf3ff', '#8f8a80', 1.7), sun);
 
-let radius = 100, errorScale = 0, selected = null, pressed = null;
+let radius = 100, corners = [], errorScale = 0, selected = null, pressed = null;
 let bytes = 0, frames = 0, since = performance.now();  // counters
 let next = 0, calm = 0;  // the frame that is asked for; frames in which nothing has changed
-const kCalm = 3;
+const kCalm = 3, kMargin = 1.08;
 
 const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) => {
   radius = 0.5 * box.getSize(new Vector3()).length();
+  corners = Array.from({ length: 8 }, (_, i) => new Vector3(...['x', 'y', 'z'].map((axis, k) => box[i >> k & 1 ? 'max' : 'min'][axis])));
   controls.maxDistance = 60 * radius;
   scene.add(ground(3 * radius));
   errorScale = extras.errorScale ?? 0;
@@ -54,9 +55,18 @@ function ground(size) {
   return Object.assign(new Mesh(disc, material), { renderOrder: -1 });
 }
 
+/** The whole scene, as near as its box allows. */
 function home() {
-  controls.target.set(0, 0, 0);
-  camera.position.set(-0.55, 0.75, 1).setLength(2.1 * radius);
+  const back = new Vector3(-0.55, 0.75, 1).normalize(), tan = Math.tan(0.5 * camera.fov * Math.PI / 180);
+  controls.target.copy(corners[0]).lerp(corners[7], 0.5);
+  camera.position.copy(controls.target).add(back);
+  camera.lookAt(controls.target);
+  const turn = camera.quaternion.clone().invert();
+  const needed = corners.map((corner) => {
+    const { x, y, z } = corner.clone().sub(controls.target).applyQuaternion(turn);
+    return z + Math.max(Math.abs(y), Math.abs(x) / camera.aspect) / tan;
+  });
+  camera.position.copy(controls.target).addScaledVector(back, kMargin * Math.max(...needed));
   wake();
 }
 
