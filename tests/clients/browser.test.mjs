@@ -58,6 +58,12 @@ test('3DTilesRendererJS flies in from far to near, and picks a building', async 
   assert.match(picked?.name ?? '', /^house_/);
 });
 
+for (const client of ['cesium', 'tiles-renderer'])
+  test(`${client} follows external tilesets to 300 houses`, async () => {
+    const picked = await flyIn(client, 'street', `${client}-street`);
+    assert.match(picked?.name ?? '', /^b\d+$/);
+  });
+
 test('3DTilesRendererJS reads meshopt', async () => {
   const { page, errors } = await open('tiles-renderer.html?tileset=/out/meshopt/tileset.json');
   const near = await page.evaluate(() => window.client.stop(150));

@@ -28,13 +28,15 @@ export function trianglesOf(file) {
   return json.meshes.flatMap((m) => m.primitives).reduce((sum, p) => sum + json.accessors[p.indices].count / 3, 0);
 }
 
-/** GLBs of the tiles that nothing refines, by the tileset that names them. */
+/** GLBs of the tiles that nothing refines, by the tileset that names them and those that it leads to. */
 export function finestContents(folder) {
   const found = [];
-  const visit = (tile) => {
-    if (!tile.children) found.push(path.join(folder, decodeURIComponent(tile.content.uri)));
-    for (const child of tile.children ?? []) visit(child);
+  const visit = (tile, below) => {
+    const content = path.join(below, decodeURIComponent(tile.content.uri));
+    if (content.endsWith('.json')) visit(readJson(content).root, path.dirname(content));
+    else if (!tile.children) found.push(content);
+    for (const child of tile.children ?? []) visit(child, below);
   };
-  visit(readJson(path.join(folder, 'tileset.json')).root);
+  visit(readJson(path.join(folder, 'tileset.json')).root, folder);
   return found;
 }

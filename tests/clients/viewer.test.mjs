@@ -56,7 +56,7 @@ async function colourfulness(page) {
   }, picture);
 }
 
-/** Calls that draw on the page's canvas while `act` runs and a second after. */
+/** Calls that draw on the page's canvas while `act` runs and 0.7 s after. */
 async function drawn(page, act) {
   await page.evaluate(() => {
     if (window.drawn !== undefined) return;
@@ -68,11 +68,11 @@ async function drawn(page, act) {
   });
   const before = await page.evaluate(() => window.drawn);
   await act();
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(700);
   return await page.evaluate(() => window.drawn) - before;
 }
 
-/** Nothing is drawn for a second: throws unless that comes within a minute. */
+/** Nothing is drawn for a while: throws unless that comes within a minute. */
 async function idle(page) {
   for (let i = 0; i < 60; ++i) if (await drawn(page, () => {}) === 0) return;
   throw new Error('the page draws on and on');
@@ -81,7 +81,7 @@ async function idle(page) {
 const scenes = {
   local: { finer: 4, place: /^local/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
   earth: { finer: 4, place: /UTM zone 32N/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
-  street: { finer: 8, place: /^local/, name: /^b\d+$/, source: /source\s+b\d+\.obj/ },  // 300 houses: external tilesets
+  street: { finer: 8, place: /touching plane/, name: /^b\d+$/, source: /source\s+b\d+\.obj/ },  // 300 houses: external tilesets
 };
 
 test('an idle page draws nothing, and draws when something changes', async (t) => {
