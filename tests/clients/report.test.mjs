@@ -82,9 +82,9 @@ test('pictures are decoded when they come into view, on a narrow screen too', as
 test('the plots tell about the building under the pointer', async () => {
   const { page } = await openReport('local', { width: 1400, height: 900 });
   const svg = page.locator('#plots svg').first();
-  await svg.scrollIntoViewIfNeeded();
   let told = '';
-  for (let i = 0; told === '' && i < 300; ++i) {  // a slow page may still be laying itself out
+  for (let i = 0; told === '' && i < 300; ++i) {  // cards above that come into view may still move it
+    await svg.evaluate((plot) => plot.scrollIntoView({ block: 'center' }));
     const box = await svg.boundingBox();
     await page.mouse.move(box.x + box.width / 2 + i % 2, box.y + 60);
     told = await page.locator('#plots .tip').first().textContent();
