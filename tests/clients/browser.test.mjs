@@ -16,12 +16,10 @@ async function open(url) {
   return opened;
 }
 
-const stops = [['far', 8000], ['middle', 500], ['near', 60]];
-
 /** Bytes of tiles answered since `from`. */
 const tileBytes = (from) => server.log.slice(from).filter(({ url }) => url.endsWith('.glb')).reduce((sum, { bytes }) => sum + bytes, 0);
 
-async function flyIn(client, folder, name) {
+async function flyIn(client, folder, name, stops = [['far', 8000], ['middle', 500], ['near', 60]]) {
   const finest = finestContents(path.join(root, folder));
   const triangles = finest.reduce((sum, file) => sum + trianglesOf(file), 0);
   const bytes = finest.reduce((sum, file) => sum + fs.statSync(file).size, 0);
@@ -58,11 +56,10 @@ test('3DTilesRendererJS flies in from far to near, and picks a building', async 
   assert.match(picked?.name ?? '', /^house_/);
 });
 
-for (const client of ['cesium', 'tiles-renderer'])
-  test(`${client} follows external tilesets to 300 houses`, async () => {
-    const picked = await flyIn(client, 'street', `${client}-street`);
-    assert.match(picked?.name ?? '', /^b\d+$/);
-  });
+test('CesiumJS follows external tilesets to 300 houses', async () => {  // 3DTilesRendererJS does in the viewer's test
+  const picked = await flyIn('cesium', 'street', 'cesium-street', [['far', 30000], ['middle', 5000], ['near', 60]]);
+  assert.match(picked?.name ?? '', /^b\d+$/);
+});
 
 test('3DTilesRendererJS reads meshopt', async () => {
   const { page, errors } = await open('tiles-renderer.html?tileset=/out/meshopt/tileset.json');
