@@ -7,6 +7,8 @@
 
 #include "store.h"
 
+#include <sqlite3.h>
+
 #include "store_parts.h"
 
 namespace colod {
@@ -73,6 +75,29 @@ class Hash {
 };
 
 }  // namespace
+
+Store::Impl::~Impl() { sqlite3_close(db); }
+
+void Store::Impl::execute(const char* sql, Stage stage) const {
+  if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
+    throw Error(stage, path, std::string("scene file: ") + sqlite3_errmsg(db));
+}
+
+void Store::Impl::transaction(const std::function<void()>& body) const {
+  execute("BEGIN IMMEDIATE", Stage::kOutput);
+  try {
+    body();
+    execute("COMMIT", Stage::kOutput);
+  } catch (...) {
+    sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
+bool Store::Impl::has_row(const char* sql, const std::string& name) const {
+  Statement s = read(sql);
+  return s.bind(name).step();
+}
 
 Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
