@@ -35,7 +35,7 @@ struct Settings {
 
 struct Answer {
   double seconds = 0, objective = 0, bound = 0;
-  bool is_proven = false;
+  bool is_proven = false, has_solution = true;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -84,8 +84,9 @@ Answer by_cbc(const Model& model, const LinearProgram& program, double limit) {
   Answer a{seconds_since(start), 0, Cbc_getBestPossibleObjValue(cbc) + constants(model),
            Cbc_isProvenOptimal(cbc) != 0};
   Choice x(model.items.size(), 0);
-  if (const double* solution = Cbc_getColSolution(cbc))
-    for (int k = 0; k < model.size(); ++k) x[k] = solution[k] > 0.5;
+  const double* solution = Cbc_bestSolution(cbc);
+  a.has_solution = solution != nullptr;
+  for (int k = 0; solution && k < model.size(); ++k) x[k] = solution[k] > 0.5;
   a.objective = objective(model, x);
   Cbc_deleteModel(cbc);
   return a;
@@ -113,6 +114,15 @@ std::vector<SelectionBuilding> scene_of(int size, const Settings& s,
   }
 }
 
+void print_cbc(const Answer& cbc) {
+  std::printf("| %.2f s, ", cbc.seconds);
+  if (cbc.has_solution)
+    std::printf("%.5f", cbc.objective);
+  else
+    std::printf("no solution");
+  std::printf(cbc.is_proven ? ", proven " : ", bound %.5f ", cbc.bound);
+}
+
 void run(int size, const Settings& s) {
   SelectionOptions options;
   options.is_paper = s.is_paper, options.main_share = 0, options.gap = 0;
@@ -120,13 +130,13 @@ void run(int size, const Settings& s) {
   const Model model = build_model(scene, options);
   const LinearProgram program = write_program(model);
   const Answer ours = by_ours(scene, options);
-  const Answer cbc = by_cbc(model, program, s.seconds);
-  std::printf("| %d | %zu | %zu × %zu | %.2f s, %.5f, gap %.3f %%%s | %.2f s, %.5f%s ",
-              model.size(), scene.size(), program.objective.size(), program.rows.size(),
-              ours.seconds, ours.objective,
+  std::printf("| %d | %zu | %zu × %zu | %.2f s, %.5f, gap %.3f %%%s ", model.size(), scene.size(),
+              program.objective.size(), program.rows.size(), ours.seconds, ours.objective,
               100 * (ours.bound - ours.objective) / std::abs(ours.objective),
-              ours.is_proven ? ", proven" : "", cbc.seconds, cbc.objective,
-              cbc.is_proven ? ", proven" : "");
+              ours.is_proven ? ", proven" : "");
+  std::fflush(stdout);  // the others may take hours
+  const Answer cbc = by_cbc(model, program, s.seconds);
+  print_cbc(cbc);
   if (model.size() <= s.lp_most) {
     const Answer lp = by_lp_solve(model, s.callbacks);
     std::printf("| %.2f s%s ", lp.seconds,
@@ -135,9 +145,12 @@ void run(int size, const Settings& s) {
   } else {
     std::printf("| not tried ");
   }
-  std::printf("| %.4f %% | %s |\n",
-              100 * (cbc.objective - ours.objective) / std::abs(cbc.objective),
-              ours.bound >= cbc.objective - 1e-6 ? "above" : "BELOW");
+  if (cbc.has_solution)
+    std::printf("| %.4f %% | %s |\n",
+                100 * (cbc.objective - ours.objective) / std::abs(cbc.objective),
+                ours.bound >= cbc.objective - 1e-6 ? "above" : "BELOW");
+  else
+    std::printf("| – | – |\n");
   std::fflush(stdout);
 }
 
