@@ -138,6 +138,15 @@ using namespace hollows;
 
 namespace {
 
+constexpr double kMostCheek = 12;  // m² of a wall beside a niche, a shaft or a bay
+
+std::vector<const Panel*> walls_up_to(const std::vector<Panel>& panels, double most_area) {
+  std::vector<const Panel*> walls;
+  for (const Panel& p : panels)
+    if (p.is_wall && p.plane->area >= 0.3 && p.plane->area <= most_area) walls.push_back(&p);
+  return walls;
+}
+
 double largest_area(const std::vector<Panel>& panels) {
   double most = 0;
   for (const Panel& p : panels) most = std::max(most, p.plane->area);
@@ -179,10 +188,8 @@ std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& a
     if (p.is_floor && p.plane->area >= 0.5 && p.plane->area <= kMostArea)
       if (auto tray = tray_on(panels, p)) hollows.push_back(std::move(*tray));
   const double largest = largest_area(panels);
-  const double most_cheek = std::min(12.0, 0.1 * largest);
-  std::vector<const Panel*> walls;
-  for (const Panel& p : panels)
-    if (p.is_wall && p.plane->area >= 0.3 && p.plane->area <= most_cheek) walls.push_back(&p);
+  const std::vector<const Panel*> sides = walls_up_to(panels, kMostCheek),
+                                  walls = walls_up_to(panels, std::min(kMostCheek, 0.1 * largest));
   for (std::size_t i = 0; i < walls.size(); ++i)
     for (std::size_t j = i + 1; j < walls.size(); ++j)
       if (is_near(walls[i]->box, walls[j]->box, kMostWidth))
@@ -198,10 +205,10 @@ std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& a
       if (is_near(walls[i]->box, walls[j]->box, kTouch))
         if (auto shaft = shaft_at_corner(panels, *walls[i], *walls[j]))
           if (!is_known(planes, hollows, *shaft)) hollows.push_back(std::move(*shaft));
-  for (std::size_t i = 0; i < walls.size(); ++i)
-    for (std::size_t j = i + 1; j < walls.size(); ++j)
-      if (is_near(walls[i]->box, walls[j]->box, kMostWidth))
-        if (auto bay = bay_between(panels, *walls[i], *walls[j]))
+  for (std::size_t i = 0; i < sides.size(); ++i)  // a small house's may be large beside its walls
+    for (std::size_t j = i + 1; j < sides.size(); ++j)
+      if (is_near(sides[i]->box, sides[j]->box, kMostWidth))
+        if (auto bay = bay_between(panels, *sides[i], *sides[j]))
           if (!is_known(planes, hollows, *bay)) hollows.push_back(std::move(*bay));
   for (Hollow& h : dormers_on(panels)) hollows.push_back(std::move(h));
   for (Hollow& h : hollows) put_in_order(h);

@@ -1,7 +1,9 @@
 // Based on: hollows.h.
 // Differs: robust rules only. Rays give a balcony's floor or one of its walls to the body, a
 //   loggia's ceiling and cheeks to the body or to several small segments. The planes of a tray or a
-//   niche become one segment: the one that has most of them and little else, or a new one.
+//   niche become one segment: the one that has most of them and little else, or a new one. A
+//   chimney of which a scan shows a corner only may share a detail's segment with something larger;
+//   its planes then become a segment, too.
 // Notation: –
 #include <algorithm>
 
@@ -11,7 +13,10 @@
 namespace colod {
 namespace {
 
-constexpr double kMostOthers = 2.0;  // of the hollow's area: planes of others in its segment
+constexpr double kMostOthers = 2.0;   // of the hollow's area: planes of others in its segment
+constexpr double kShaftReach = 0.25;  // metres around a shaft: planes there are its own
+constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps shafts: two
+                                // windows' reveals look like one
 constexpr double kSameHollow = 0.5;  // of its area that an earlier one has taken: it is that one
 
 double area_of(const Planes& planes, const std::vector<int>& which) {
@@ -70,6 +75,34 @@ bool may_own(const Planes& planes, const Hollow& hollow, double alcove_area) {
   return hollow.kind != Hollow::Kind::kShaft;
 }
 
+/// A shaft whose walls lie in one segment that is mostly something else leaves it.
+void part_shaft(const Planes& planes, const HitGrid& grid, const Hollow& shaft,
+                const std::vector<char>& is_taken, SegmentDraft& draft) {
+  const std::vector<int> of = segments_by_plane(planes.planes.size(), draft);
+  const int home = of[shaft.planes.front()];
+  std::int64_t voxels = 0;
+  for (const Segment& s : draft.segments) voxels += s.voxels;
+  if (home < 0 || kMostShare * draft.segments[home].voxels > voxels ||
+      std::any_of(shaft.planes.begin(), shaft.planes.end(),
+                  [&](int p) { return is_taken[p] || of[p] != home; }))
+    return;
+  Region grown = shaft.solid;
+  for (HalfSpace& side : grown) side.offset += kShaftReach;
+  Segment own, rest = draft.segments[home];
+  for (const int p : rest.planes)
+    if (contains(grown, planes.planes[p].centroid) ||
+        std::find(shaft.planes.begin(), shaft.planes.end(), p) != shaft.planes.end())
+      own.planes.push_back(p);
+  std::erase_if(rest.planes,
+                [&](int p) { return std::binary_search(own.planes.begin(), own.planes.end(), p); });
+  if (area_of(planes, rest.planes) <= area_of(planes, own.planes)) return;
+  own.voxels = std::min(rest.voxels, voxels_in(grid, shaft.solid));
+  own.volume = static_cast<double>(own.voxels) * grid.voxel_volume();
+  rest.voxels -= own.voxels, rest.volume -= own.volume;
+  draft.segments[home] = std::move(rest);
+  draft.segments.push_back(std::move(own));
+}
+
 }  // namespace
 
 void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
@@ -77,7 +110,8 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
   std::vector<int> every(planes.planes.size());
   for (std::size_t p = 0; p < every.size(); ++p) every[p] = static_cast<int>(p);
   std::vector<char> is_taken(planes.planes.size(), 0);
-  for (const Hollow& hollow : find_hollows(planes, every)) {
+  const std::vector<Hollow> hollows = find_hollows(planes, every);
+  for (const Hollow& hollow : hollows) {
     if (!may_own(planes, hollow, alcove_area)) continue;
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
     for (const int p : hollow.planes)
@@ -111,6 +145,8 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
         s.voxels = 0, s.volume = 0;
       }
   }
+  for (const Hollow& hollow : hollows)  // others may have taken a shaft's walls: a dormer's cheeks
+    if (hollow.kind == Hollow::Kind::kShaft) part_shaft(planes, grid, hollow, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
 }
 

@@ -30,7 +30,8 @@ int append_segments(const HitGrid& grid, const OwnedGroups& owned, SegmentDraft&
 Segments finish_segments(const Planes& planes, SegmentDraft draft);
 
 /// The planes of each tray, and of each niche all of whose planes are smaller than `alcove_area`,
-/// become one segment; before the coverage is known.
+/// become one segment, and the walls of a chimney that its segment has little of; before the
+/// coverage is known.
 void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
                      SegmentDraft& draft);
 

@@ -4,6 +4,7 @@
 
 #include "../src/extraction.h"
 #include "../src/segments.h"
+#include "../src/segments_rules.h"
 #include "hollows_helpers.h"
 
 using namespace colod;
@@ -120,6 +121,15 @@ TEST_CASE("a bay is told by its sides, its front and the facade, square or splay
   }
 }
 
+TEST_CASE("a bay as high as a small house is one, though its sides are large beside the facade") {
+  Mesh house = bay_house(0.5);  // sides of 1.35 × 5.9 = 8 m², no wall over 60 m²
+  for (Vec3& v : house.vertices)
+    v = {0.75 * v.x(), v.y() == -0.9 ? -1.3 : v.y(), v.z() == 1 ? 0.5 : v.z() == 4.5 ? 6.4 : v.z()};
+  const auto found = hollows_of(house);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kBay);
+}
+
 TEST_CASE("what a scan misses of them stands in the mesh") {
   const double house = 560;
   CHECK(signed_volume(mesh_of(balcony_house()).mesh()) ==
@@ -142,5 +152,25 @@ TEST_CASE("trays and niches are segments of their own, whole") {
     REQUIRE(own != s.segments.end());
     CHECK(own->planes == hollows_of(planes)[0].planes);
     CHECK(own->is_alcove == is_loggia);
+  }
+}
+
+TEST_CASE("a chimney's corner leaves a detail that is mostly something else, not the body") {
+  Mesh house = join(plain_house(), box_mesh({5, 3, 7}, {8, 7, 10}));  // a storey on the roof
+  add_quad(house, {2, 2, 7}, {2.6, 2, 7}, {2.6, 2, 8.7}, {2, 2, 8.7});
+  add_quad(house, {2, 2.6, 7}, {2, 2, 7}, {2, 2, 8.7}, {2, 2.6, 8.7});
+  const Planes planes = planes_of_mesh(house);
+  const HitGrid grid = cast_visibility(planes, {.ns = 10, .nr = 20});
+  const auto shaft = hollows_of(planes);
+  REQUIRE(shaft.size() == 1);
+  for (const bool is_detail : {true, false}) {
+    SegmentDraft draft;
+    draft.segments.resize(2);
+    for (int p = 0; p < static_cast<int>(planes.planes.size()); ++p)
+      draft.segments[planes.planes[p].centroid.z() > 7.1].planes.push_back(p);
+    draft.segments[0].voxels = 1000, draft.segments[1].voxels = is_detail ? 15 : 500;
+    give_to_hollows(planes, grid, 80, draft);
+    REQUIRE(draft.segments.size() == (is_detail ? 3u : 2u));
+    CHECK((draft.segments.back().planes == shaft[0].planes) == is_detail);
   }
 }
