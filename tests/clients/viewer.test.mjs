@@ -56,25 +56,34 @@ async function colourfulness(page) {
   }, picture);
 }
 
-/** Calls that draw on the page's canvas while `act` runs and 0.7 s after. */
-async function drawn(page, act) {
-  await page.evaluate(() => {
-    if (window.drawn !== undefined) return;
+/** Calls so far that drew on the page's canvas, counted from the first time that this is asked. */
+function drawn(page) {
+  return page.evaluate(() => {
+    if (window.drawn !== undefined) return window.drawn;
     window.drawn = 0;
     for (const name of ['drawArrays', 'drawElements']) {
       const draw = WebGL2RenderingContext.prototype[name];
       WebGL2RenderingContext.prototype[name] = function (...a) { ++window.drawn; return draw.apply(this, a); };
     }
+    return 0;
   });
-  const before = await page.evaluate(() => window.drawn);
-  await act();
-  await page.waitForTimeout(700);
-  return await page.evaluate(() => window.drawn) - before;
 }
 
-/** Nothing is drawn for a while: throws unless that comes within a minute. */
+/** Throws unless something is drawn within half a minute after `act`. */
+async function draws(page, act, name) {
+  const before = await drawn(page);
+  await act();
+  await page.waitForFunction((count) => window.drawn > count, before, { timeout: 30000 })
+    .catch(() => { throw new Error(`${name} draws nothing`); });
+}
+
+/** Nothing is drawn for 0.7 s: throws unless that comes within a minute. */
 async function idle(page) {
-  for (let i = 0; i < 60; ++i) if (await drawn(page, () => {}) === 0) return;
+  for (let i = 0; i < 60; ++i) {
+    const before = await drawn(page);
+    await page.waitForTimeout(700);
+    if (await drawn(page) === before) return;
+  }
   throw new Error('the page draws on and on');
 }
 
@@ -98,7 +107,7 @@ test('an idle page draws nothing, and draws when something changes', async (t) =
     size: () => page.setViewportSize({ width: 700, height: 500 }),
   };
   for (const [name, act] of Object.entries(changes)) {
-    assert.ok(await drawn(page, act) > 0, `${name} draws nothing`);
+    await draws(page, act, name);
     await idle(page);
   }
   assert.deepEqual(errors, []);
