@@ -3,7 +3,8 @@
 //   bench_peers run PEER SOURCE OUT.off [--faces N]
 //     PEER: meshopt   meshoptimizer's quadric collapse, to N faces (meshes only)
 //           quadrics  CGAL's Garland & Heckbert collapse, to N faces (meshes only)
-//           wrap      CGAL's alpha wrap, then the same collapse to N faces (meshes and points)
+//           wrap      CGAL's alpha wrap (meshes and points)
+//           collapse  as quadrics, of a SOURCE that has no ground to part with, such as a wrap
 //           polyfit   CGAL's Polygonal_surface_reconstruction (Nan & Wonka 2017) with GLPK, on the
 //                     20 largest of colod's own planes (meshes and points)
 //     Exit code 1: no answer, the reason on stderr.
@@ -100,6 +101,7 @@ Mesh welded(const Mesh& mesh) {
 }
 
 Mesh run_meshopt(const Source& source, std::size_t faces) {
+  if (!source.is_mesh()) throw no_answer("needs a mesh");
   const Mesh in = welded(source.mesh);
   std::vector<float> positions;
   for (const Vec3& v : in.vertices)
@@ -160,12 +162,13 @@ void collapse(SurfaceMesh& mesh, std::size_t faces) {
 }
 
 Mesh run_quadrics(const Source& source, std::size_t faces) {
+  if (!source.is_mesh()) throw no_answer("needs a mesh");
   SurfaceMesh mesh = to_surface_mesh(welded(source.mesh));
   collapse(mesh, faces);
   return from_surface_mesh(mesh);
 }
 
-Mesh run_wrap(const Source& source, std::size_t faces) {
+Mesh run_wrap(const Source& source) {
   std::vector<Point> points;
   for (const Vec3& p : source.is_mesh() ? source.mesh.vertices : source.cloud.points)
     points.emplace_back(p.x(), p.y(), p.z());
@@ -176,7 +179,6 @@ Mesh run_wrap(const Source& source, std::size_t faces) {
                        wrap);
   else
     CGAL::alpha_wrap_3(points, kWrapShare * diagonal, kOffsetShare * diagonal, wrap);
-  collapse(wrap, faces);
   return from_surface_mesh(wrap);
 }
 
@@ -261,14 +263,12 @@ Mesh compact(const Mesh& mesh) {
 
 void run(const std::string& peer, const std::string& path, const std::string& out,
          std::size_t faces) {
-  Source source = read_building(path);
+  Source source = peer == "collapse" ? read_single(path) : read_building(path);
   const Vec3 origin = center(source);
-  if (!source.is_mesh() && (peer == "meshopt" || peer == "quadrics"))
-    throw no_answer("needs a mesh");
-  const Mesh result = peer == "meshopt"    ? run_meshopt(source, faces)
-                      : peer == "quadrics" ? run_quadrics(source, faces)
-                      : peer == "wrap"     ? run_wrap(source, faces)
-                                           : run_polyfit(source);
+  const Mesh result = peer == "meshopt"   ? run_meshopt(source, faces)
+                      : peer == "wrap"    ? run_wrap(source)
+                      : peer == "polyfit" ? run_polyfit(source)
+                                          : run_quadrics(source, faces);
   if (result.faces.empty()) throw no_answer("no face");
   write_off(out, compact(result), origin);
 }
@@ -317,7 +317,7 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "one peer on one building");
   run_app->add_option("PEER", peer)
       ->required()
-      ->check(CLI::IsMember({"meshopt", "quadrics", "wrap", "polyfit"}));
+      ->check(CLI::IsMember({"meshopt", "quadrics", "wrap", "collapse", "polyfit"}));
   run_app->add_option("SOURCE", source)->required();
   run_app->add_option("OUT", out)->required();
   run_app->add_option("--faces", faces, "wanted")->check(CLI::Range(4, 100000000));
