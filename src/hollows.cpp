@@ -132,13 +132,18 @@ bool is_room(const std::vector<Panel>& panels, const Vec3& x) {
   return balance <= -kRays / 2;
 }
 
+bool meets_back(const std::vector<Panel>& panels, const Vec3& from, const Vec3& direction) {
+  return first_side(panels, from, direction) < 0;
+}
+
 }  // namespace hollows
 
 using namespace hollows;
 
 namespace {
 
-constexpr double kMostCheek = 12;  // m² of a wall beside a niche, a shaft or a bay
+constexpr double kMostCheek = 12;      // m² of a wall beside a niche, a shaft or a bay
+constexpr double kLeastUnderside = 1;  // m² of a tray whose floor is not seen
 
 std::vector<const Panel*> walls_up_to(const std::vector<Panel>& panels, double most_area) {
   std::vector<const Panel*> walls;
@@ -187,6 +192,10 @@ std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& a
   for (const Panel& p : panels)
     if (p.is_floor && p.plane->area >= 0.5 && p.plane->area <= kMostArea)
       if (auto tray = tray_on(panels, p)) hollows.push_back(std::move(*tray));
+  for (const Panel& p : panels)
+    if (p.is_ceiling && p.plane->area >= kLeastUnderside && p.plane->area <= kMostArea)
+      if (auto tray = tray_on(panels, p); tray && !is_known(planes, hollows, *tray))
+        hollows.push_back(std::move(*tray));
   const double largest = largest_area(panels);
   const std::vector<const Panel*> sides = walls_up_to(panels, kMostCheek),
                                   walls = walls_up_to(panels, std::min(kMostCheek, 0.1 * largest));

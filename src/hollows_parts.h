@@ -57,6 +57,8 @@ bool reaches_into(const Panel& panel, const Region& region);
 
 /// Inside the building, as most level rays from there see it: they meet planes from their back.
 bool is_room(const std::vector<Panel>& panels, const Vec3& x);
+/// The first plane that a ray meets shows it its back.
+bool meets_back(const std::vector<Panel>& panels, const Vec3& from, const Vec3& direction);
 
 /// The rectangle on a plane that covers ranges along two directions, a little grown.
 std::vector<Vec3> rectangle(const Vec3& normal, double offset, const Vec3& a, const Range& ra,
@@ -68,7 +70,8 @@ Hollow::Rim level_rim(double sign, double z, const Vec3& a, const Range& ra, con
 Hollow::Rim upright_rim(const Vec3& out, double offset, const Range& across, const Range& height,
                         int like = -1);
 
-/// Each over a floor, a pair of walls, a roof's small plane; nothing where they form none.
+/// Each over a floor or its underside, a pair of walls, a roof's small plane; nothing where they
+/// form none.
 std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& floor);
 std::optional<Hollow> niche_between(const std::vector<Panel>& panels, const Panel& a,
                                     const Panel& b, double largest_area);

@@ -1,5 +1,8 @@
 // Based on: hollows.cpp.
-// Differs: –
+// Differs: a tray is told by its floor and the walls around it. From the street a scan may show no
+//   floor, but the underside and the same walls; these tell it, too, where they close all sides
+//   that the house does not, and nothing lies or stands on them. The floor is then a slab's
+//   thickness above the underside.
 // Notation: U floor of a tray, W its walls, d one of four horizontal directions.
 #include <algorithm>
 #include <cmath>
@@ -11,10 +14,12 @@ namespace {
 
 constexpr double kThickness = 0.12;  // metres of a wall whose other side is not seen
 constexpr double kThickest = 0.35;   // metres between both sides of a thin wall
-constexpr double kSlab = 0.18;       // metres of a floor whose underside is not seen
+constexpr double kSlab = 0.18;       // metres of a floor of which only one side is seen
 constexpr double kMostBeyond = 1.5;  // metres of a tray beyond the part of its floor that is seen
 constexpr double kBelow = 1.0;       // metres below a floor: where nothing or a room is
+constexpr double kAbove = 0.3;       // metres above the walls: where a closed box has its lid
 constexpr double kLeastRail = 0.4, kMostRail = 1.6;  // metres of a tray's wall above its floor
+constexpr double kLeastRailAlone = 0.7;  // of one whose floor is not seen: lower boxes are ledges
 
 /// A level plane near that height over at least half of the rectangle.
 bool has_level(const std::vector<Panel>& panels, bool is_ceiling, const Range& z, const Vec3& a,
@@ -41,10 +46,14 @@ struct TrayWall {
   double area;
 };
 
-/// A floor with what its walls say of its extent: of many only a part is seen.
+/// A floor with what its walls say of its extent: of many only a part is seen, of some only the
+/// underside.
 struct Ground {
   const Panel* panel;
-  std::vector<Vec3> ends;  ///< of its walls
+  double z;                     ///< of the floor
+  std::vector<Vec3> ends = {};  ///< of its walls
+
+  bool is_underside() const { return panel->is_ceiling; }
 
   Range along(const Vec3& direction) const {
     Range r = panel->along(direction);
@@ -53,15 +62,16 @@ struct Ground {
   }
 };
 
-bool is_rail(const Panel& floor, const Panel& wall) {
-  const double z = floor.plane->centroid.z();
-  return wall.height().high >= z + kLeastRail && wall.height().high <= z + kMostRail &&
-         wall.height().low <= z + kReach;
+bool is_rail(const Ground& floor, const Panel& wall) {
+  const double least = floor.is_underside() ? kLeastRailAlone : kLeastRail;
+  const auto [low, high] = wall.height();
+  return high >= floor.z + least && high <= floor.z + kMostRail && low <= floor.z + kReach;
 }
 
 bool stands_beside(const Ground& floor, const Panel& wall, const Vec3& out, double at) {
   const double edge = floor.along(out).high;
-  if (edge < at - 0.4 || edge > at + 0.2 || floor.panel->at(out) > at - 0.15) return false;
+  const double beyond = floor.is_underside() ? kReach : 0.2;  // a slab may be larger than its floor
+  if (edge < at - 0.4 || edge > at + beyond || floor.panel->at(out) > at - 0.15) return false;
   const Range across = wall.along(beside(out)), floor_across = floor.along(beside(out));
   return overlap(across, floor_across) >= 0.5 * std::min(across.length(), floor_across.length());
 }
@@ -87,7 +97,7 @@ std::vector<TrayWall> walls_of_tray(const std::vector<Panel>& panels, const Grou
     if (!whole.is_wall || whole.plane->area > kMostArea || whole.plane->area < 0.15) continue;
     if (!is_near(whole.box, floor.panel->box, reach)) continue;
     const Panel p = part_near(whole, floor.panel->box, kMostBeyond);
-    if (p.points.size() < 3 || !is_rail(*floor.panel, p)) continue;
+    if (p.points.size() < 3 || !is_rail(floor, p)) continue;
     if (!stands_beside(floor, p, p.out, p.at(p.out))) continue;
     TrayWall w{p.plane->normal, p.plane->offset, kThickness, p.along(beside(p.out)),
                p.height(),      p.out,           p.id,       nullptr,
@@ -117,8 +127,8 @@ bool is_closed_by_house(const std::vector<Panel>& panels, const Ground& floor, c
 /// The inner side of a wall whose outer side is not seen.
 const Panel* lone_inner_side(const std::vector<Panel>& panels, const Ground& floor, const Vec3& d) {
   for (const Panel& p : panels)
-    if (p.is_wall && p.out.dot(d) < -kAlike && p.plane->area < kMostArea &&
-        is_rail(*floor.panel, p) && std::abs(p.at(d) - floor.along(d).high) < kReach &&
+    if (p.is_wall && p.out.dot(d) < -kAlike && p.plane->area < kMostArea && is_rail(floor, p) &&
+        std::abs(p.at(d) - floor.along(d).high) < kReach &&
         is_near(p.box, floor.panel->box, kMostBeyond))
       return &p;
   return nullptr;
@@ -147,11 +157,10 @@ struct OpenSide {
 /// What planes form a tray.
 struct Tray {
   Ground floor;
-  double z;  ///< of the floor
-  std::vector<TrayWall> walls;
-  std::vector<OpenSide> open_sides;
-  Vec3 out;      ///< of its largest wall
-  Range height;  ///< from the floor's underside to the top of the walls
+  std::vector<TrayWall> walls = {};
+  std::vector<OpenSide> open_sides = {};
+  Vec3 out = {};      ///< of its largest wall
+  Range height = {};  ///< from the floor's underside to the top of the walls
 };
 
 bool has_corner(const std::vector<TrayWall>& walls) {
@@ -193,8 +202,40 @@ void close_sides(const std::vector<Panel>& panels, Tray& tray) {
   tray.walls.insert(tray.walls.end(), added.begin(), added.end());
 }
 
+/// Something lies on the walls: they are the sides of a closed box.
+bool has_lid(const std::vector<Panel>& panels, const Tray& tray) {
+  const Vec3 side = beside(tray.out);
+  const Range a = tray.floor.along(tray.out), b = tray.floor.along(side);
+  return std::any_of(panels.begin(), panels.end(), [&](const Panel& p) {
+    return p.plane->normal.z() > kUpright && p.height().high > tray.floor.z + kLeastRail &&
+           p.height().low < tray.height.high + kAbove &&
+           overlap(p.along(tray.out), a) > 0.3 * a.length() &&
+           overlap(p.along(side), b) > 0.3 * b.length();
+  });
+}
+
+/// Walls go on above a tray's own, or panes stand there: what is within is a room.
+bool is_closed_above(const std::vector<Panel>& panels, const Tray& tray) {
+  for (const double above : {0.25, 0.9}) {
+    Vec3 x = tray.floor.panel->plane->centroid;
+    x.z() = tray.height.high + above;
+    if (std::all_of(tray.walls.begin(), tray.walls.end(),
+                    [&](const TrayWall& w) { return meets_back(panels, x, w.out); }))
+      return true;
+  }
+  return false;
+}
+
+/// Of a tray whose floor is not seen: walls or the house on all sides, nothing above them.
+bool is_open_box(const std::vector<Panel>& panels, const Tray& tray) {
+  return std::none_of(tray.open_sides.begin(), tray.open_sides.end(),
+                      [](auto& s) { return s.closed == OpenSide::Closed::kByNothing; }) &&
+         !has_lid(panels, tray) && !is_closed_above(panels, tray);
+}
+
 std::optional<Tray> find_tray(const std::vector<Panel>& panels, const Panel& panel) {
-  Tray tray{{&panel, {}}, panel.plane->centroid.z(), {}, {}, {}, {}};
+  const double z = panel.plane->centroid.z();
+  Tray tray{{&panel, panel.is_ceiling ? z + kSlab : z}};
   // The walls beside what is seen of the floor say how far it goes, and that which others do.
   for (int round = 0; round < 2; ++round) {
     tray.walls = walls_of_tray(panels, tray.floor);
@@ -207,8 +248,10 @@ std::optional<Tray> find_tray(const std::vector<Panel>& panels, const Panel& pan
       *std::max_element(tray.walls.begin(), tray.walls.end(),
                         [](const TrayWall& a, const TrayWall& b) { return a.area < b.area; });
   tray.out = largest.out;
-  tray.height = height_of(tray.walls, largest.area, tray.z);
+  tray.height = height_of(tray.walls, largest.area, tray.floor.z);
+  if (tray.floor.is_underside()) tray.height.low = z;
   close_sides(panels, tray);
+  if (tray.floor.is_underside() && !is_open_box(panels, tray)) return std::nullopt;
   return tray;
 }
 
@@ -218,7 +261,7 @@ void describe_side(const Tray& tray, const OpenSide& side, Hollow& hollow) {
   hollow.solid.push_back({side.out, side.edge + (is_at_house ? kReach : 0.01)});
   if (side.closed == OpenSide::Closed::kByNothing)
     hollow.rims.push_back(upright_rim(side.out, side.edge, tray.floor.along(beside(side.out)),
-                                      {tray.height.low, tray.z}));
+                                      {tray.height.low, tray.floor.z}));
 }
 
 void describe_wall(const Tray& tray, const TrayWall& w, Hollow& hollow) {
@@ -234,7 +277,7 @@ void describe_wall(const Tray& tray, const TrayWall& w, Hollow& hollow) {
                            {side, across.high + 0.01},
                            {-side, -(across.low - 0.01)},
                            {Vec3::UnitZ(), top + 0.02},
-                           {-Vec3::UnitZ(), -(tray.z - 0.01)}});
+                           {-Vec3::UnitZ(), -(tray.floor.z - 0.01)}});
   const auto add_rim = [&](const Vec3& normal, double offset, const Range& height, int like) {
     hollow.rims.push_back(
         {normal, offset, rectangle(normal, offset, side, across, Vec3::UnitZ(), height), like});
@@ -242,7 +285,7 @@ void describe_wall(const Tray& tray, const TrayWall& w, Hollow& hollow) {
   const bool is_lone = w.inner && w.inner->id == w.plane;
   add_rim(w.normal, w.offset, {bottom, top}, is_lone ? w.plane : -1);
   if (is_lone) return;
-  const Range above_floor = {tray.z, top};
+  const Range above_floor = {tray.floor.z, top};
   if (w.inner)
     add_rim(w.inner->plane->normal, w.inner->plane->offset, above_floor, w.plane);
   else
@@ -254,11 +297,13 @@ void describe_levels(const std::vector<Panel>& panels, const Tray& tray, Hollow&
   const Vec3 out = tray.out, side = beside(out);
   const Range a = tray.floor.along(out), b = tray.floor.along(side);
   const auto [bottom, top] = tray.height;
-  hollow.solid.push_back({Vec3::UnitZ(), tray.z + 0.005});
+  hollow.solid.push_back({Vec3::UnitZ(), tray.floor.z + 0.005});
   hollow.solid.push_back({-Vec3::UnitZ(), -bottom + 0.005});
   if (!has_level(panels, false, {top - 0.1, top + 0.1}, out, a, side, b))
     hollow.rims.push_back(level_rim(1, top, out, a, side, b));
-  if (!has_level(panels, true, {tray.z - 0.7, tray.z - 0.04}, out, a, side, b))
+  if (tray.floor.is_underside())
+    hollow.rims.push_back(level_rim(1, tray.floor.z, out, a, side, b, tray.floor.panel->id));
+  else if (!has_level(panels, true, {tray.floor.z - 0.7, tray.floor.z - 0.04}, out, a, side, b))
     hollow.rims.push_back(level_rim(-1, bottom, out, a, side, b, tray.floor.panel->id));
 }
 
@@ -268,7 +313,7 @@ std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& flo
   const std::optional<Tray> tray = find_tray(panels, floor);
   if (!tray) return std::nullopt;
   Hollow hollow{.kind = Hollow::Kind::kTray, .planes = {floor.id}};
-  hollow.air = {{-Vec3::UnitZ(), -tray->z - 0.01}, {Vec3::UnitZ(), tray->height.high}};
+  hollow.air = {{-Vec3::UnitZ(), -tray->floor.z - 0.01}, {Vec3::UnitZ(), tray->height.high}};
   for (const OpenSide& side : tray->open_sides) describe_side(*tray, side, hollow);
   for (const TrayWall& wall : tray->walls) describe_wall(*tray, wall, hollow);
   describe_levels(panels, *tray, hollow);

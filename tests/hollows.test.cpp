@@ -70,6 +70,49 @@ TEST_CASE("a balcony needs its floor and a corner of walls, whatever way it look
   CHECK(hollows_of(turned).size() == 1);
 }
 
+TEST_CASE("a balcony seen from below only is a tray, its floor a slab above the underside") {
+  Mesh turned = balcony_from_below();
+  for (Vec3& v : turned.vertices)
+    v = Vec3(0.8 * v.x() - 0.6 * v.y(), 0.6 * v.x() + 0.8 * v.y(), v.z());
+  CHECK(hollows_of(turned).size() == 1);
+  const auto found = hollows_of(balcony_from_below());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kTray);
+  CHECK(found[0].planes.size() == 4);
+  CHECK(contains(found[0].air, {4.5, -0.6, 3.5}));
+  CHECK(contains(found[0].solid, {4.5, -0.6, 2.9}));
+  CHECK_FALSE(contains(found[0].air, {4.5, -0.6, 2.9}));
+  CHECK(signed_volume(mesh_of(balcony_from_below()).mesh()) ==
+        Approx(560 + 3 * 1.2 * 0.18 + 0.12 * 1.02 * (3 + 2 * 1.08)).margin(0.05));
+}
+
+TEST_CASE("an underside is no tray with a lid, low walls, an open side or a room above") {
+  CHECK(hollows_of(balcony_from_below(3.4)).empty());  // a canopy's fascia
+  CHECK(hollows_of(without(balcony_from_below(), {6, -2, 2}, {6, 0, 4})).empty());
+  CHECK(hollows_of(without(balcony_from_below(), {3, -1.2, 2}, {6, -1.2, 4})).empty());
+  Mesh box = balcony_from_below(), sloped = box, bay = box, roof = box;
+  add_quad(box, {3, -1.2, 4}, {6, -1.2, 4}, {6, 0, 4}, {3, 0, 4});
+  CHECK(hollows_of(box).empty());
+  add_quad(sloped, {3, -1.2, 4}, {6, -1.2, 4}, {6, 0, 5}, {3, 0, 5});
+  CHECK(hollows_of(sloped).empty());
+  // Panes above the walls, a little behind them.
+  add_quad(bay, {3, -1.1, 4}, {6, -1.1, 4}, {6, -1.1, 5.5}, {3, -1.1, 5.5});
+  add_quad(bay, {3.1, 0, 4}, {3.1, -1.2, 4}, {3.1, -1.2, 5.5}, {3.1, 0, 5.5});
+  add_quad(bay, {5.9, -1.2, 4}, {5.9, 0, 4}, {5.9, 0, 5.5}, {5.9, -1.2, 5.5});
+  for (const Hollow& h : hollows_of(bay)) CHECK(h.kind != Hollow::Kind::kTray);
+  // A roof well above it leaves the balcony open.
+  add_quad(roof, {3, -1.2, 5.2}, {6, -1.2, 5.2}, {6, 0, 5.5}, {3, 0, 5.5});
+  CHECK(hollows_of(roof).size() == 1);
+}
+
+TEST_CASE("a floor that is seen goes before the underside") {
+  Mesh both = balcony_house();
+  add_quad(both, {3, 0, 2.8}, {6, 0, 2.8}, {6, -1.2, 2.8}, {3, -1.2, 2.8});
+  const auto found = hollows_of(both);
+  REQUIRE(found.size() == 1);
+  CHECK(contains(found[0].solid, {4.5, -0.6, 2.99}));
+}
+
 TEST_CASE("a loggia is a niche, the space between two bays is none") {
   const auto found = hollows_of(loggia_house());
   REQUIRE(found.size() == 1);

@@ -27,6 +27,16 @@ inline Mesh balcony_house() {
   return m;
 }
 
+/// The same balcony from below: the outer faces and the underside. `top` is the rail's height.
+inline Mesh balcony_from_below(double top = 4) {
+  Mesh m = plain_house();
+  add_quad(m, {3, 0, 2.8}, {6, 0, 2.8}, {6, -1.2, 2.8}, {3, -1.2, 2.8});
+  add_quad(m, {3, -1.2, 2.8}, {6, -1.2, 2.8}, {6, -1.2, top}, {3, -1.2, top});
+  add_quad(m, {3, 0, 2.8}, {3, -1.2, 2.8}, {3, -1.2, top}, {3, 0, top});
+  add_quad(m, {6, -1.2, 2.8}, {6, 0, 2.8}, {6, 0, top}, {6, -1.2, top});
+  return m;
+}
+
 /// A loggia in that front, 3 wide, 1.5 deep, from z = 3 to 5.3, its floor not seen.
 inline Mesh loggia_house() {
   Mesh m = plain_house();
