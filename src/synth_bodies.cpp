@@ -127,6 +127,25 @@ std::vector<Vec3> chevron(const Profile& p, double x) {
           p.edge(x, true, true),   p.ridge(x, true),  p.edge(x, false, true)};
 }
 
+/// A house up to its eaves: floor, walls, soffit and the edge board all around.
+struct WallsToEaves {
+  Body body;  ///< without roofs
+  std::vector<Vec2> eaves;
+  double foot;  ///< of the roof [m]
+};
+
+WallsToEaves add_walls_to_eaves(House& house, const RoofShape& shape) {
+  Solid& solid = house.solid;
+  const auto footprint = rectangle(0, 0, house.width, house.depth);
+  const auto eaves = offset(footprint, shape.overhang);
+  solid.add(reversed(lifted(footprint, 0)), kBody);
+  const auto walls = add_walls(solid, footprint, 0, shape.eaves, kBody);
+  add_soffit(solid, footprint, eaves, shape.eaves);
+  const double foot = shape.eaves + shape.thickness;
+  add_walls(solid, eaves, shape.eaves, foot, kRoof);
+  return {{walls[0], walls[1], walls[2], walls[3], {}}, eaves, foot};
+}
+
 }  // namespace
 
 Body add_gable_body(House& house, const RoofShape& shape) {
@@ -160,16 +179,8 @@ Body add_gable_body(House& house, const RoofShape& shape) {
 }
 
 Body add_hip_body(House& house, const RoofShape& shape) {
-  Solid& solid = house.solid;
-  const auto footprint = rectangle(0, 0, house.width, house.depth);
-  const auto eaves = offset(footprint, shape.overhang);
-  solid.add(reversed(lifted(footprint, 0)), kBody);
-  const auto walls = add_walls(solid, footprint, 0, shape.eaves, kBody);
-  add_soffit(solid, footprint, eaves, shape.eaves);
-  const double zb = shape.eaves + shape.thickness;
-  add_walls(solid, eaves, shape.eaves, zb, kRoof);
-  Body body = {walls[0], walls[1], walls[2], walls[3], {}};
-  body.roofs = add_hips(solid, eaves[0].x(), eaves[0].y(), eaves[2].x(), eaves[2].y(), zb,
+  auto [body, eaves, foot] = add_walls_to_eaves(house, shape);
+  body.roofs = add_hips(house.solid, eaves[0].x(), eaves[0].y(), eaves[2].x(), eaves[2].y(), foot,
                         shape.slope, kRoof);
   return body;
 }
@@ -191,15 +202,9 @@ Body add_flat_body(House& house, double height) {
 
 Body add_mansard_body(House& house, const RoofShape& shape, double run) {
   Solid& solid = house.solid;
-  const auto footprint = rectangle(0, 0, house.width, house.depth);
-  const auto eaves = offset(footprint, shape.overhang);
-  solid.add(reversed(lifted(footprint, 0)), kBody);
-  const auto walls = add_walls(solid, footprint, 0, shape.eaves, kBody);
-  add_soffit(solid, footprint, eaves, shape.eaves);
-  const double zb = shape.eaves + shape.thickness;
-  add_walls(solid, eaves, shape.eaves, zb, kRoof);
-  const auto low = lifted(eaves, zb), high = lifted(offset(eaves, -run), zb + shape.slope * run);
-  Body body = {walls[0], walls[1], walls[2], walls[3], {}};
+  auto [body, eaves, foot] = add_walls_to_eaves(house, shape);
+  const auto low = lifted(eaves, foot),
+             high = lifted(offset(eaves, -run), foot + shape.slope * run);
   for (int i = 0; i < 4; ++i)
     body.roofs.push_back(solid.add({low[i], low[(i + 1) % 4], high[(i + 1) % 4], high[i]}, kRoof));
   body.roofs.push_back(solid.add(high, kRoof));
