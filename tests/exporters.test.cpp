@@ -2,12 +2,14 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <set>
 
 #include "../exporters/archive.h"
 #include "../exporters/draco.h"
 #include "../exporters/engine.h"
 #include "../exporters/files.h"
 #include "../exporters/glb.h"
+#include "../exporters/gltf.h"
 #include "../exporters/obj.h"
 #include "../exporters/tiles3d.h"
 #include "../src/error.h"
@@ -355,6 +357,29 @@ TEST_CASE("grids nest and keep the bound") {
     CHECK(grid.error() <= bound);
     CHECK(std::exp2(std::round(std::log2(grid.step()))) == grid.step());
     CHECK((grid.round({1.234, 5.678, 9.1}) - Vec3(1.234, 5.678, 9.1)).norm() <= bound);
+  }
+}
+
+TEST_CASE("decoded positions lie exactly on the grid") {
+  const Box box{Vec3(-17.3, 2.1, -5.7), Vec3(21.9, 14.2, 30.8)};
+  const QuantizationGrid grid = fit_grid(box, 0.003);
+  FlatMesh mesh = flatten(three_layers("house", Vec3::Zero()).layers[0].mesh, box.min, grid, 0);
+  const DracoContent content = decode_draco(encode_draco(mesh, grid).bytes);
+  for (const double x : content.attributes.at(0).values)
+    CHECK(x / grid.step() == std::round(x / grid.step()));
+}
+
+TEST_CASE("one feature or several, ids come back as they were") {
+  const QuantizationGrid grid = fit_grid({Vec3::Constant(-50), Vec3::Constant(50)}, 0.01);
+  for (const int second : {7, 300, 70000}) {
+    const PolygonMesh house = three_layers("house", Vec3::Zero()).layers[0].mesh;
+    FlatMesh mesh = flatten(house, Vec3::Zero(), grid, 7);
+    append(mesh, flatten(house, Vec3(30, 0, 0), grid, second));
+    const DracoResult draco = encode_draco(mesh, grid);
+    const DracoContent content = decode_draco(draco.bytes);
+    const std::vector<double>& values = content.attributes.at(draco.feature_id).values;
+    const std::set<double> ids(values.begin(), values.end());
+    CHECK(ids == std::set<double>{7.0, static_cast<double>(second)});
   }
 }
 

@@ -69,11 +69,11 @@ function drawn(page) {
   });
 }
 
-/** Throws unless something is drawn within half a minute after `act`. */
+/** Throws unless something is drawn within three minutes after `act`. */
 async function draws(page, act, name) {
   const before = await drawn(page);
   await act();
-  await page.waitForFunction((count) => window.drawn > count, before, { timeout: 30000 })
+  await page.waitForFunction((count) => window.drawn > count, before)
     .catch(() => { throw new Error(`${name} draws nothing`); });
 }
 
