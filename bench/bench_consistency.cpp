@@ -1,13 +1,13 @@
 // How alike the layers of parts of the same kind are: ours beside the baselines.
 //
 //   bench_consistency FOLDER --truth TRUTH.json [--ns N] [--layers N] [--only NAME...] [--json]
-//   [--segments FILE] [--no-meshes] [--threads N]
+//   [--segments FILE] [--no-meshes] [--threads N] [--nr N] [--visibility ENGINE]
 //
 // FOLDER holds meshes whose faces carry object numbers. Buildings are segmented once; then every
 // method gives layers to the segments: joint (the product), alone (each building analysed for
 // itself), extent and volume (size thresholds, placed so that as many segments lie on each layer as
-// the joint analysis puts there). Quadric collapse has no segments: its layers have as many faces
-// as the joint ones. `mesh`: by the meshes, as `colod eval --truth` does it; `segment`: by the
+// the joint analysis puts there). Quadric collapse has no segments: its layers are asked
+// for as many faces as the joint ones. `mesh`: by the meshes, as `colod eval --truth` does it; `segment`: by the
 // layer of the segment that overlaps a part most, where one has an IoU of face area of at least
 // 0.3.
 // --segments writes every segment with its descriptor, layer and part as JSON.
@@ -43,6 +43,11 @@ struct Settings {
 struct Result {
   std::string method;
   std::vector<TypeConsistency> by_mesh, by_segment;
+};
+
+/// Per layer, over all buildings: quadric collapse stops short where borders and loose pieces are.
+struct Faces {
+  std::vector<std::size_t> asked, got;
 };
 
 const TruthBuilding* truth_of(const Truth& truth, const std::string& name) {
@@ -165,17 +170,27 @@ Mesh collapsed(const Mesh& mesh, std::size_t faces) {
   return result;
 }
 
-std::vector<PlacedPart> place_collapsed(const Scene& joint, const Truth& truth) {
+std::vector<PlacedPart> place_collapsed(const Scene& joint, const Truth& truth, Faces& faces) {
   std::vector<std::vector<PlacedPart>> placed(joint.buildings.size());
+  std::vector<Faces> of(joint.buildings.size());
   parallel_for(joint.buildings.size(), [&](std::size_t i) {
     const Building& b = joint.buildings[i];
     const TruthBuilding* t = truth_of(truth, b.source.name);
     if (!t || b.has_failed()) return;
     std::vector<Mesh> layers;
-    for (const Layer& layer : b.layers)
+    for (const Layer& layer : b.layers) {
       layers.push_back(collapsed(b.source.mesh, layer.mesh.triangles.size()));
+      of[i].asked.push_back(layer.mesh.triangles.size());
+      of[i].got.push_back(layers.back().faces.size());
+    }
     placed[i] = place_parts(b.source, *t, layers);
   });
+  for (const Faces& own : of)
+    for (std::size_t k = 0; k < own.asked.size(); ++k) {
+      faces.asked.resize(std::max(faces.asked.size(), k + 1), 0);
+      faces.got.resize(faces.asked.size(), 0);
+      faces.asked[k] += own.asked[k], faces.got[k] += own.got[k];
+    }
   std::vector<PlacedPart> all;
   for (const auto& p : placed) all.insert(all.end(), p.begin(), p.end());
   return all;
@@ -219,9 +234,10 @@ void write_segments(const Scene& scene, const Truth& truth, const std::string& p
   std::ofstream(path) << all.dump();
 }
 
-std::string row(const std::vector<int>& counts) {
+template <class Count>
+std::string row(const std::vector<Count>& counts) {
   std::string text;
-  for (const int n : counts) text += (text.empty() ? "" : "/") + std::to_string(n);
+  for (const Count n : counts) text += (text.empty() ? "" : "/") + std::to_string(n);
   return text;
 }
 
@@ -278,6 +294,7 @@ int run(const Settings& settings) {
   std::vector<std::vector<int>> joint;
   for (const Building& b : scene.buildings) joint.push_back(b.layer_of_segment);
   std::vector<Result> results;
+  Faces faces;
   for (const std::string& method : settings.only) {
     for (std::size_t i = 0; i < joint.size(); ++i) scene.buildings[i].layer_of_segment = joint[i];
     if (method != "quadric") {
@@ -285,17 +302,22 @@ int run(const Settings& settings) {
     } else if (!settings.has_no_meshes) {
       mesh_all(scene, settings.options);
       results.push_back(
-          {method, tally_parts(place_collapsed(scene, truth), settings.options.layers), {}});
+          {method, tally_parts(place_collapsed(scene, truth, faces), settings.options.layers), {}});
     }
   }
   if (!settings.is_json) {
     print(results);
+    if (!faces.asked.empty())
+      std::printf("\nQuadric collapse: %s faces asked for on 0/1/2, %s left.\n",
+                  row(faces.asked).c_str(), row(faces.got).c_str());
     return 0;
   }
   json out;
   for (const Result& r : results)
     out[r.method] = {{"mesh", json::parse(consistency_json(r.by_mesh))},
                      {"segment", json::parse(consistency_json(r.by_segment))}};
+  if (!faces.asked.empty())
+    out["quadric"].update({{"faces_asked", faces.asked}, {"faces_left", faces.got}});
   std::printf("%s\n", out.dump(1).c_str());
   return 0;
 }
@@ -311,6 +333,8 @@ int main(int argc, char** argv) {
   app.add_option("--truth", s.truth)->required()->check(CLI::ExistingFile);
   app.add_option("--ns", s.options.ns);
   app.add_option("--nr", s.options.nr);
+  app.add_option_function<std::string>(
+      "--visibility", [&s](const std::string& v) { s.options.visibility = visibility_of(v); });
   app.add_option("--layers", s.options.layers);
   app.add_option("--eta", s.options.eta);
   app.add_option("--only", s.only, "methods")

@@ -21,8 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPresentShare = 0.75;
-constexpr double kNear = 0.25;  // metres at most: a scan has no roof under its dormers, and a
-                                // layer's roof may lie half a relief from them
+constexpr double kNear = 0.25;      // metres at most: a scan has no roof under its dormers, and a
+                                    // layer's roof may lie half a relief from them
 constexpr double kNearShare = 0.5;  // of the relief
 constexpr double kSpacing = 0.1;    // metres between samples
 constexpr int kLeastSamples = 20;
@@ -91,10 +91,10 @@ std::vector<SampledPart> sample_parts(const Source& source, const TruthBuilding&
   return parts;
 }
 
-bool is_present(const SampledPart& part, const RayScene& mesh) {
+double share_near(const SampledPart& part, const RayScene& mesh) {
   std::size_t near = 0;
   for (const Vec3& x : part.samples) near += distance_to(mesh, x) <= reach(part.truth);
-  return static_cast<double>(near) >= kPresentShare * static_cast<double>(part.samples.size());
+  return static_cast<double>(near) / static_cast<double>(part.samples.size());
 }
 
 TruthBuilding read_synth_building(const nlohmann::json& b) {
@@ -211,10 +211,12 @@ std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& t
                  .depth = part.truth.depth,
                  .is_seen = part.samples.size() >= kLeastSamples,
                  .first = -1,
-                 .present = std::vector<char>(count, 0)};
+                 .present = std::vector<char>(count, 0),
+                 .near = std::vector<double>(count, 0)};
     int first = count;
     for (int k = count; k-- > 0 && p.is_seen;) {
-      p.present[k] = is_present(part, scenes[k]);
+      p.near[k] = share_near(part, scenes[k]);
+      p.present[k] = p.near[k] >= kPresentShare;
       if (p.present[k] && first == k + 1) first = k;
     }
     if (first < count) p.first = first;

@@ -42,6 +42,7 @@ struct PlacedPart {
   bool is_seen = false;       ///< the source shows enough of it
   int first = -1;             ///< layer on which it appears; −1: on none
   std::vector<char> present;  ///< per layer
+  std::vector<double> near;   ///< per layer: share of its telling samples within its reach of it
 };
 
 /// Judges `layers`, coarsest first, in the coordinates of `source`, whose faces carry object

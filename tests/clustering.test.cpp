@@ -166,6 +166,7 @@ TEST_CASE("none, one, fewer than clusters, identical, flat only, no extent") {
   CHECK(cluster_segments({small}).layer == std::vector<int>{2});
   CHECK(cluster_segments({big, small}, {.layers = 1}).layer == std::vector<int>{0, 0});
   CHECK(cluster_segments({big, small}, {.layers = 2}).layer == std::vector<int>{1, 1});
+  CHECK(cluster_segments({big, small}, {.layers = 5}).layer[0] == 1);
   CHECK(cluster_segments({big, small}, {.layers = 6}).layer[0] == 1);
   CHECK(cluster_segments(std::vector<Descriptor>(9, small)).layer == std::vector<int>(9, 2));
   Descriptor nothing;

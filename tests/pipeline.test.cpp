@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "../exporters/glb.h"
 #include "../exporters/tiles3d.h"
@@ -168,6 +169,36 @@ TEST_CASE("any number of layers, one included") {
     Options options = small_options();
     options.layers = layers;
     check_chain(build({house("a")}, options).buildings[0], layers);
+  }
+}
+
+TEST_CASE("one segment, twins, parts all alike: any number of layers") {
+  const Source box = test::as_source(test::box_mesh({0, 0, 0}, {10, 8, 7}), "box");
+  Source row = box;  // twelve parts on the roof, of one size
+  row.name = "row";
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 at(0.8 + 2.2 * (i % 4), 1 + 2.4 * (i / 4), 6.9);
+    row.mesh = test::join(row.mesh, test::box_mesh(at, at + Vec3(1, 1, 2)));
+  }
+  Source twin = house("twin");
+  twin.name = "other twin";
+  for (const int layers : {1, 2, 5}) {
+    Options options = small_options();
+    options.layers = layers;
+    INFO(layers << " layers");
+    const Scene lone = build({box}, options);  // nothing beyond layer 0
+    check_chain(lone.buildings[0], layers);
+    CHECK(lone.buildings[0].layer_of_segment == std::vector<int>{0});
+    CHECK(lone.buildings[0].layers.back().validity.faces == 12);
+    const Scene twins = build({house("twin"), twin}, options);
+    for (const Building& b : twins.buildings) check_chain(b, layers);
+    // More layers than kinds: what parts them then is the samples of their shapes.
+    if (layers <= 2) CHECK(signature(twins.buildings[0]) == signature(twins.buildings[1]));
+    const Building alike = std::move(build({row}, options).buildings[0]);
+    check_chain(alike, layers);
+    std::vector<int> of_parts = alike.layer_of_segment;
+    std::erase(of_parts, 0);
+    if (layers <= 2) CHECK(std::set(of_parts.begin(), of_parts.end()).size() <= 1);
   }
 }
 

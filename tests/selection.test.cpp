@@ -344,6 +344,17 @@ TEST_CASE("one building alone has no f_co and is solved to proof") {
   }
 }
 
+TEST_CASE("two identical buildings keep the same, and their f_co is that of each to the other") {
+  const SelectionBuilding b = random_scene({.buildings = 1, .segments = 6}, 4)[0];
+  for (const bool is_paper : {false, true})
+    for (const int exact : {0, 40}) {
+      const Selection s = select_layer0({b, b}, rules(is_paper, exact));
+      CHECK(s.is_layer0[0] == s.is_layer0[1]);
+      CHECK(s.objective == Approx(enumerated_optimum({b, b}, rules(is_paper, 0))).epsilon(2e-3));
+      CHECK(s.bound >= s.objective - 1e-9);
+    }
+}
+
 TEST_CASE("a building keeps what it has: one segment, no coverage, no area, NaN") {
   SelectionBuilding lone, bare;
   std::mt19937_64 random(1);
