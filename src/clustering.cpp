@@ -6,10 +6,11 @@
 // --rules robust: flat segments are set aside (whitening makes them a class of their own, and the
 // clusters would be "flat / not flat"); clusters by falling median extent (mean volume is fragile:
 // leaving out one building of 15 swapped layers, measured in November 2026); flat ones then join
-// the layer whose median log extent is nearest. Both: where the spectrum does not tell k kinds
-// apart (fewer segments than clusters, no gap after the k-th eigenvalue, clusters that stay empty)
-// size decides, as in Layering::kSize: thresholds on the extent, `size_threshold` · 2^(k/2 − i), i
-// = 1..k−1: absolute, so that a scene's layers do not depend on what else stands in it.
+// the layer whose median log extent is nearest. Robust: segments that differ by no more than the
+// noise of their samples are of one kind. Both: where there are no k kinds (fewer segments than
+// clusters, no gap after the k-th eigenvalue, clusters that stay empty) size decides, as in
+// Layering::kSize: thresholds on the extent, `size_threshold` · 2^(k/2 − i), i = 1..k−1: absolute,
+// so that a scene's layers do not depend on what else stands in it.
 //
 // Notation: n segments, k = l_n − 1 clusters, S similarities, D their row sums,
 // L = D^-1/2 (D − S) D^-1/2.
@@ -30,6 +31,7 @@ namespace {
 
 constexpr int kRestarts = 20, kMaxIterations = 100;
 constexpr double kSameEigenvalue = 1e-9;
+constexpr double kSameKind = 0.05;     // distance; samples of the same shape differ by up to 0.02
 constexpr int kVoters = 5;             // of a prior
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
@@ -142,11 +144,26 @@ bool order_clusters(const std::vector<Descriptor>& segments, const std::vector<i
   return std::find(first.begin(), first.end(), ids.size()) == first.end();
 }
 
+// Whether some k segments differ pairwise by more than the noise of their samples.
+bool has_kinds(const std::vector<Descriptor>& segments, const std::vector<int>& ids, int k,
+               double eta) {
+  std::vector<int> leaders;
+  for (const int s : ids) {
+    if (std::none_of(leaders.begin(), leaders.end(), [&](int l) {
+          return segment_distance(segments[s], segments[l], eta) <= kSameKind;
+        }))
+      leaders.push_back(s);
+    if (static_cast<int>(leaders.size()) >= k) return true;
+  }
+  return false;
+}
+
 // The spectrum's classes of `ids`, 0..k−1 coarse to fine; empty when it does not tell k apart.
 std::vector<int> spectral_classes(const std::vector<Descriptor>& segments,
                                   const std::vector<int>& ids, int k,
                                   const ClusteringOptions& options, Clustering& result) {
   if (static_cast<int>(ids.size()) < k) return {};
+  if (!options.is_paper && !has_kinds(segments, ids, k, options.eta)) return {};
   const Spectrum spectrum = smallest_spectrum(segments, ids, k, options.eta, options.seed);
   result.eigenvalues = spectrum.values;
   if (spectrum.values.size() < static_cast<std::size_t>(k)) {
