@@ -8,7 +8,8 @@
 //           polyfit   CGAL's Polygonal_surface_reconstruction (Nan & Wonka 2017) with GLPK, on the
 //                     20 largest of colod's own planes (meshes and points)
 //     Exit code 1: no answer, the reason on stderr.
-//   bench_peers measure SOURCE MODEL... : a JSON array with what `colod eval --lfd` says of each
+//   bench_peers measure SOURCE MODEL... : JSON with what `colod eval --lfd` says of each; null: no
+//   mesh
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/GLPK_mixed_integer_program_traits.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -301,8 +302,13 @@ void measure_all(const std::string& path, const std::vector<std::string>& models
   if (source.is_mesh()) own = describe_light_fields(source.mesh);
   nlohmann::ordered_json json = {{"diagonal", diagonal_of(source)},
                                  {"models", nlohmann::json::array()}};
-  for (const std::string& model : models)
-    json["models"].push_back(measure(gauge, own ? &*own : nullptr, model));
+  for (const std::string& model : models) {
+    try {
+      json["models"].push_back(measure(gauge, own ? &*own : nullptr, model));
+    } catch (const Error&) {  // such as two faces without area, which a peer calls an answer
+      json["models"].push_back(nullptr);
+    }
+  }
   std::printf("%s\n", json.dump().c_str());
 }
 
