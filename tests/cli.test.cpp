@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "meshes.h"
+#include "temporary_folder.h"
 
 using namespace colod;
 namespace fs = std::filesystem;
@@ -25,30 +26,21 @@ std::string slurp(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A folder of its own that goes away with the test.
-class Folder {
+/// With colod run in it.
+class Folder : public test::TemporaryFolder {
  public:
-  Folder() {
-    char name[] = "/tmp/colod-test-XXXXXX";
-    path_ = mkdtemp(name);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
   std::string write(const std::string& name, const std::string& text) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
+    fs::create_directories((path() / name).parent_path());
+    std::ofstream(path() / name, std::ios::binary) << text;
+    return (path() / name).string();
   }
   Result colod(const std::string& arguments) const {
     const std::string command = std::string(COLOD_BINARY) + " " + arguments + " >" +
-                                (path_ / "stdout").string() + " 2>" + (path_ / "stderr").string();
+                                (path() / "stdout").string() + " 2>" + (path() / "stderr").string();
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path_ / "stdout"),
-            slurp(path_ / "stderr")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path() / "stdout"),
+            slurp(path() / "stderr")};
   }
-
- private:
-  fs::path path_;
 };
 
 std::string off(const Mesh& m) {

@@ -13,21 +13,15 @@
 #include "../src/mesh_io.h"
 #include "../src/store.h"
 #include "meshes.h"
+#include "temporary_folder.h"
 
 using namespace colod;
 namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own that goes away with the test.
-struct Folder {
-  fs::path path;
-  Folder() {
-    char name[] = "/tmp/colod-stages-XXXXXX";
-    path = mkdtemp(name);
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
+struct Folder : test::TemporaryFolder {
+  std::string operator/(const std::string& name) const { return (path() / name).string(); }
 };
 
 std::string slurp(const fs::path& path) {
@@ -107,7 +101,7 @@ TEST_CASE("kill -9 at any point of segment and mesh: the rest is done, the bytes
   Folder f;
   fs::create_directories(f / "in");
   for (int i = 0; i < 20; ++i)
-    write_off(f.path / "in" / ("h" + std::to_string(10 + i) + ".off"), house(i));
+    write_off(f.path() / "in" / ("h" + std::to_string(10 + i) + ".off"), house(i));
   const std::string scene = f / "s.colod", log = f / "log";
   const std::vector<std::string> small{"--ns", "10", "--nr", "12", "--threads", "2"};
   std::vector<std::string> segment{"segment", f / "in", "-o", scene, "--log-json"};
@@ -144,11 +138,11 @@ TEST_CASE("kill -9 at any point of segment and mesh: the rest is done, the bytes
   build.insert(build.end(), small.begin(), small.end());
   REQUIRE(run(build, log));
   int files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(f.path / "whole"))
+  for (const auto& entry : fs::recursive_directory_iterator(f.path() / "whole"))
     if (entry.is_regular_file() && entry.path().stem() != "report") {
-      const fs::path name = fs::relative(entry.path(), f.path / "whole");
+      const fs::path name = fs::relative(entry.path(), f.path() / "whole");
       INFO(name.string());
-      CHECK(slurp(entry.path()) == slurp(f.path / "stages" / name));
+      CHECK(slurp(entry.path()) == slurp(f.path() / "stages" / name));
       ++files;
     }
   CHECK(files > 20);
@@ -158,9 +152,9 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   Folder f;
   fs::create_directories(f / "city");
   for (int i = 0; i < 4; ++i)
-    write_off(f.path / "city" / ("h" + std::to_string(i) + ".off"), house_with_porch(i));
+    write_off(f.path() / "city" / ("h" + std::to_string(i) + ".off"), house_with_porch(i));
   fs::create_directories(f / "alone");
-  write_off(f.path / "alone" / "h2.off", house_with_porch(2));
+  write_off(f.path() / "alone" / "h2.off", house_with_porch(2));
   const std::string log = f / "log", city = f / "city.colod", one = f / "one.colod";
   const std::vector<std::string> small{"--ns", "32", "--nr", "40", "--quiet"};
   const auto with = [&](std::vector<std::string> a) {
@@ -172,7 +166,7 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   CHECK(slurp(log).find("not analysed") != std::string::npos);
   REQUIRE(run({"analyze", city}, log));
   REQUIRE(run(with({"build", f / "alone/h2.off", "-o", f / "out", "--prior", city}), log));
-  CHECK(slurp(f.path / "out" / "report.json").find("\"prior\": true") != std::string::npos);
+  CHECK(slurp(f.path() / "out" / "report.json").find("\"prior\": true") != std::string::npos);
   CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city, "--layers", "4"}),
              log));
 
@@ -185,9 +179,9 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   CHECK(alone.layer_of_segment.back() > 0);
   REQUIRE(run({"mesh", one}, log));
   REQUIRE(run({"export", one, "-o", f / "stages", "--quiet"}, log));
-  CHECK(slurp(f.path / "out" / "buildings" / "h2.glb") ==
-        slurp(f.path / "stages" / "buildings" / "h2.glb"));
-  CHECK(slurp(f.path / "stages" / "report.json").find("\"prior\": true") != std::string::npos);
+  CHECK(slurp(f.path() / "out" / "buildings" / "h2.glb") ==
+        slurp(f.path() / "stages" / "buildings" / "h2.glb"));
+  CHECK(slurp(f.path() / "stages" / "report.json").find("\"prior\": true") != std::string::npos);
 }
 
 TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees with the report") {
@@ -201,7 +195,7 @@ TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees w
   const std::string command = std::string(COLOD_BINARY) + " eval --truth " +
                               (f / "synth/truth.json") + " " + (f / "out") + " >" + out;
   REQUIRE(std::system(command.c_str()) == 0);
-  const std::string text = slurp(out), report = slurp(f.path / "out" / "report.json");
+  const std::string text = slurp(out), report = slurp(f.path() / "out" / "report.json");
   CHECK(text.find("\"on_majority_layer\"") != std::string::npos);
   CHECK(count_of(text, "buildings_agreeing") == count_of(report, "buildings_agreeing"));
   CHECK(!run({"eval", f / "out", "--truth", f / "out/report.json"}, log));

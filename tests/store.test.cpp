@@ -8,6 +8,7 @@
 #include "../src/error.h"
 #include "../src/report.h"
 #include "meshes.h"
+#include "temporary_folder.h"
 
 using namespace colod;
 
@@ -15,18 +16,8 @@ namespace {
 
 /// A path that is free and is removed with the test.
 struct TemporaryFile {
-  std::string path;
-  TemporaryFile() {
-    char name[] = "/tmp/colod-store-XXXXXX";
-    const int handle = mkstemp(name);
-    REQUIRE(handle >= 0);
-    path = name;
-    std::remove(path.c_str());
-  }
-  ~TemporaryFile() {
-    std::remove(path.c_str());
-    std::remove((path + "-journal").c_str());
-  }
+  test::TemporaryFolder folder;
+  std::string path = (folder / "scene.colod").string();
 };
 
 Options small_options() {

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "temporary_folder.h"
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -18,24 +20,21 @@ namespace {
 class Place {
  public:
   Place() {
-    char name[] = "/tmp/colod-view-XXXXXX";
-    path_ = mkdtemp(name);
-    fs::copy_file(COLOD_BINARY, path_ / "colod");
+    fs::copy_file(COLOD_BINARY, folder_ / "colod");
     write("viewer/index.html", "the page");
     write("viewer/draco/draco_decoder.wasm", "wasm");
     write("city/tileset.json", "{}");
     write("city/tiles/a house.glb", "0123456789");
     write("secret", "secret");
   }
-  ~Place() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
+  fs::path operator/(const std::string& name) const { return folder_ / name; }
   void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
  private:
-  fs::path path_;
+  colod::test::TemporaryFolder folder_;
 };
 
 /// A running `colod view`; `said` is what it printed up to the end of the first line.
