@@ -18,8 +18,9 @@
 namespace colod {
 namespace {
 
-constexpr double kLeastTouch = 0.3;    // metres
-constexpr double kSmallPlanes = 0.03;  // of the area of layer 0's segments, together
+constexpr double kLeastTouch = 0.3;     // metres
+constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together
+constexpr std::size_t kFewPlanes = 12;  // of layer 0's segments: too few to be worth thinning out
 
 struct Piece {
   Vec3 a, b, c;
@@ -132,8 +133,9 @@ double small_area(const Planes& planes, const Segments& segments,
     for (const int p : segments.segments[s].planes)
       if (layer_of_segment[s] == 0)
         areas.push_back(sane_area(planes.planes[p])), total += areas.back();
-  std::sort(areas.begin(), areas.end());
   double small = -1, sum = 0;
+  if (areas.size() <= kFewPlanes) return small;
+  std::sort(areas.begin(), areas.end());
   for (std::size_t i = 0; i < areas.size(); ++i) {
     sum += areas[i];
     if (sum > kSmallPlanes * total) break;

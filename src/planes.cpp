@@ -22,6 +22,8 @@ using namespace regions;
 // 0.027 m on simulated photogrammetry).
 constexpr double kNoiseFactor = 7;
 constexpr double kLeastDistance = 0.03;  // metres
+constexpr double kMoveShare = 1.0 / 3;   // of the growing distance: what aligning may cost
+constexpr double kLeastMove = 0.002;     // metres: likewise, where there is no noise
 constexpr double kMostDistance = 0.2;    // metres
 constexpr double kLeastShare = 1e-4;     // of the building's area: the least region
 constexpr double kMostShare = 0.01;      // a region this large is never too small
@@ -69,6 +71,13 @@ double growing_distance(double noise, const Box& box, const PlaneOptions& option
   return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
 }
 
+/// What noise excuses is aligned; an exact model keeps its planes.
+AlignOptions align_options(double noise, double distance) {
+  const double excused = std::min(distance, kNoiseFactor * noise);
+  return {.least_move = std::max(kLeastMove, kMoveShare * excused),
+          .most_move = kMoveShare * distance};
+}
+
 /// m²: regions below are no planes. Rougher surfaces need larger ones.
 double least_area(double distance, double total) {
   const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
@@ -103,7 +112,7 @@ std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Pl
   const double least = least_area(result.distance, used_area(items));
   drop_small(items, least / 4, options.min_points / 2, regions);
   limit_count(regions, result.warnings);
-  regularize(items, result.distance, regions);
+  regularize(items, result.distance, align_options(noise, result.distance), regions);
   drop_small(items, least, options.min_points, regions);
   absorb_rest(items, result.distance, regions);
   return regions;

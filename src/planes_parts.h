@@ -89,9 +89,16 @@ std::vector<std::pair<int, int>> neighboring_regions(const Items& items,
 std::vector<Region> grow_with_cgal(const Items& items, const PlaneOptions& options);
 
 // planes_regularize.cpp
+/// Metres (root mean square over a region's own surface) that aligning may move it: as much as it
+/// is off its own plane, but within these.
+struct AlignOptions {
+  double least_move;
+  double most_move;
+};
 /// Joins nearly coplanar neighbours, then aligns directions and offsets where a region's own points
 /// allow.
-void regularize(const Items& items, double distance, std::vector<Region>& regions);
+void regularize(const Items& items, double distance, const AlignOptions& align,
+                std::vector<Region>& regions);
 
 // planes_outline.cpp
 /// Per region its outline; small holes are filled, and rings that end near a neighbouring plane are

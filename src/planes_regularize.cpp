@@ -23,7 +23,6 @@ constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet
 constexpr double kCrossedRms = 0.75;          // of the growing distance: one that a larger crosses,
 constexpr double kCentred = 0.15;             // of its RMS: its mean distance from that,
 constexpr double kCrossedArea = 0.25;         // of the larger one's area
-constexpr double kMoveRms = 1.0 / 3;          // of the growing distance: what aligning may cost
 constexpr double kOffsetWidth = 0.6;          // of the growing distance
 constexpr double kLeastOffset = 0.05;  // metres: parallel planes closer than this are one …
 constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
@@ -123,7 +122,7 @@ void merge_neighbors(const Items& items, double gap, bool is_refit, std::vector<
 
 /// Takes the direction `n` (turned like the region's own) about the region's centroid if that moves
 /// the region's own surface little enough.
-bool try_direction(Region& r, Vec3 n, double distance) {
+bool try_direction(Region& r, Vec3 n, const AlignOptions& options) {
   if (n.dot(r.normal) < 0) n = -n;
   const double cosine = n.dot(r.normal);
   if (cosine < std::cos(kMostTurn)) return false;
@@ -135,7 +134,8 @@ bool try_direction(Region& r, Vec3 n, double distance) {
   const Vec3 fitted = r.moments.fit(r.normal);
   const Vec3 turn = n - fitted;
   const double moved2 = turn.dot(covariance * turn);
-  if (moved2 > std::pow(kMoveRms * distance, 2)) return false;
+  const double rms = r.moments.rms(fitted, fitted.dot(r.moments.mean()));
+  if (moved2 > std::pow(std::clamp(rms, options.least_move, options.most_move), 2)) return false;
   r.normal = n;
   r.offset = n.dot(r.moments.mean());
   return true;
@@ -161,23 +161,23 @@ double quarter_deviation(double azimuth, double from) {
   return std::remainder(azimuth - from, M_PI / 2);
 }
 
-bool try_family(Region& r, const Family& f, double distance) {
+bool try_family(Region& r, const Family& f, const AlignOptions& options) {
   const double h = std::hypot(r.normal.x(), r.normal.y());
   const Vec2 to = f.nearest(r.normal.x(), r.normal.y());
-  return try_direction(r, Vec3(h * to.x(), h * to.y(), r.normal.z()), distance);
+  return try_direction(r, Vec3(h * to.x(), h * to.y(), r.normal.z()), options);
 }
 
 enum class Kind : char { kLevel, kWall, kSlope };
 
-std::vector<Kind> snap_to_upright(std::vector<Region>& regions, double distance) {
+std::vector<Kind> snap_to_upright(std::vector<Region>& regions, const AlignOptions& options) {
   std::vector<Kind> kinds;
   for (Region& r : regions) {
     const double h = std::hypot(r.normal.x(), r.normal.y());
     Kind kind = Kind::kSlope;
-    if (h < kUpright && try_direction(r, Vec3::UnitZ(), distance))
+    if (h < kUpright && try_direction(r, Vec3::UnitZ(), options))
       kind = Kind::kLevel;
     else if (std::abs(r.normal.z()) < kUpright &&
-             try_direction(r, Vec3(r.normal.x() / h, r.normal.y() / h, 0), distance))
+             try_direction(r, Vec3(r.normal.x() / h, r.normal.y() / h, 0), options))
       kind = Kind::kWall;
     kinds.push_back(kind);
   }
@@ -186,7 +186,7 @@ std::vector<Kind> snap_to_upright(std::vector<Region>& regions, double distance)
 
 /// Families of wall directions, the frame's own axes first. Walls that fit none found one.
 std::vector<Family> wall_families(const std::vector<Region>& regions,
-                                  const std::vector<Kind>& kinds, double distance) {
+                                  const std::vector<Kind>& kinds, const AlignOptions& options) {
   std::vector<Family> families{Family(0)};
   for (std::size_t i = 0; i < regions.size(); ++i) {
     if (kinds[i] != Kind::kWall) continue;
@@ -197,7 +197,7 @@ std::vector<Family> wall_families(const std::vector<Region>& regions,
       trial.normal = regions[i].normal;
       trial.moments = regions[i].moments;
       trial.area = regions[i].area;
-      if (!try_family(trial, f, distance)) continue;
+      if (!try_family(trial, f, options)) continue;
       f.weight += regions[i].area;
       f.lean += regions[i].area * quarter_deviation(azimuth, f.azimuth);
       is_in = true;
@@ -216,7 +216,7 @@ std::vector<Family> wall_families(const std::vector<Region>& regions,
 }
 
 /// Gives a slope the tilt of an earlier one; returns whether it took one.
-bool try_tilts(Region& r, const std::vector<double>& tilts, double distance) {
+bool try_tilts(Region& r, const std::vector<double>& tilts, const AlignOptions& options) {
   const double h = std::hypot(r.normal.x(), r.normal.y());
   if (h < 1e-9) return false;
   const double own = std::atan2(h, std::abs(r.normal.z()));
@@ -225,7 +225,7 @@ bool try_tilts(Region& r, const std::vector<double>& tilts, double distance) {
     const double sign = r.normal.z() < 0 ? -1 : 1;
     const Vec3 n(std::sin(tilt) * (r.normal.x() / h), std::sin(tilt) * (r.normal.y() / h),
                  sign * std::cos(tilt));
-    if (try_direction(r, n, distance)) return true;
+    if (try_direction(r, n, options)) return true;
   }
   return false;
 }
@@ -249,22 +249,22 @@ struct DirectionTable {
   }
 };
 
-void align_directions(std::vector<Region>& regions, double distance) {
-  const std::vector<Kind> kinds = snap_to_upright(regions, distance);
-  const std::vector<Family> families = wall_families(regions, kinds, distance);
+void align_directions(std::vector<Region>& regions, const AlignOptions& options) {
+  const std::vector<Kind> kinds = snap_to_upright(regions, options);
+  const std::vector<Family> families = wall_families(regions, kinds, options);
   std::vector<double> tilts;
   DirectionTable table;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     Region& r = regions[i];
     bool is_aligned = kinds[i] == Kind::kLevel;
     for (std::size_t k = 0; k < families.size() && !is_aligned; ++k)
-      is_aligned = try_family(r, families[k], distance);
-    if (kinds[i] == Kind::kSlope && !try_tilts(r, tilts, distance)) {
+      is_aligned = try_family(r, families[k], options);
+    if (kinds[i] == Kind::kSlope && !try_tilts(r, tilts, options)) {
       tilts.push_back(std::atan2(std::hypot(r.normal.x(), r.normal.y()), std::abs(r.normal.z())));
-      try_tilts(r, {tilts.back()}, distance);  // the same arithmetic as for those that follow it
+      try_tilts(r, {tilts.back()}, options);  // the same arithmetic as for those that follow it
     }
     for (std::size_t k = 0; k < table.known.size() && !is_aligned; ++k)
-      is_aligned = try_direction(r, table.known[k], distance);
+      is_aligned = try_direction(r, table.known[k], options);
     r.normal = table.same(r.normal.normalized());
     r.offset = r.normal.dot(r.moments.mean());
   }
@@ -320,14 +320,15 @@ void align_offsets(std::vector<Region>& regions, double width) {
 
 }  // namespace
 
-void regularize(const Items& items, double distance, std::vector<Region>& regions) {
+void regularize(const Items& items, double distance, const AlignOptions& align,
+                std::vector<Region>& regions) {
   Box box;
   for (const Region& r : regions)
     for (const int i : r.items) box.extend(items.center[i]);
   const double diagonal = box.diagonal();
   merge_neighbors(items, distance, true, regions,
                   [&](const Region& a, const Region& b) { return merge_cost(a, b, distance); });
-  align_directions(regions, distance);
+  align_directions(regions, align);
   align_offsets(regions, std::max(kOffsetWidth * distance,
                                   std::min(kLeastOffset, kLeastOffsetShare * diagonal)));
   merge_neighbors(items, distance, false, regions, [](const Region& a, const Region& b) {

@@ -247,11 +247,19 @@ TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
   for (const double area : {2.5, 1.9}) add(area, -1);
   const std::vector<int> layer{0, 1};
   const auto at = [&](int k) { return layer_planes(planes, segments, layer, k, {false, 3}); };
-  CHECK(at(0) == std::vector<int>{0, 1, 6});
-  CHECK(at(1) == std::vector<int>{0, 1, 4, 5, 6});
-  CHECK(at(2).size() == 8);
-  CHECK(layer_planes(planes, segments, layer, 0).size() == 6);  // the paper's
-  CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8);
+  CHECK(at(0).size() == 6);  // so few that none has to
+  for (int i = 0; i < 9; ++i) add(60, 0);
+  const auto at_large = [&](int k) {
+    std::vector<int> result = at(k);
+    CHECK(std::count_if(result.begin(), result.end(), [](int p) { return p >= 8; }) == 9);
+    std::erase_if(result, [](int p) { return p >= 8; });
+    return result;
+  };
+  CHECK(at_large(0) == std::vector<int>{0, 1, 6});
+  CHECK(at_large(1) == std::vector<int>{0, 1, 4, 5, 6});
+  CHECK(at_large(2).size() == 8);
+  CHECK(layer_planes(planes, segments, layer, 0).size() == 6 + 9);  // the paper's
+  CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8 + 9);
 }
 
 TEST_CASE("the planes of a layer are among those of the next") {
