@@ -73,9 +73,9 @@ double growing_distance(double noise, const Box& box, const PlaneOptions& option
 
 /// What noise excuses is aligned; an exact model keeps its planes.
 AlignOptions align_options(double noise, double distance) {
-  const double excused = std::min(distance, kNoiseFactor * noise);
-  return {.least_move = std::max(kLeastMove, kMoveShare * excused),
-          .most_move = kMoveShare * distance};
+  const double most = kMoveShare * distance;
+  const double excused = std::max(kLeastMove, kMoveShare * kNoiseFactor * noise);
+  return {.least_move = std::min(excused, most), .most_move = most};
 }
 
 /// m²: regions below are no planes. Rougher surfaces need larger ones.

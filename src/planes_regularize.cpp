@@ -1,7 +1,9 @@
 // Based on: plane hygiene as measured in November 2026: an exact partition keeps its topology
 // whatever the planes are, but only merged and aligned planes give clean cells.
-// Differs: --rules robust only; the paper regularises nothing. What noise tilts by some degrees and
-// a much larger region passes through the middle of joins that one: it bent a facade on all layers.
+// Differs: --rules robust only; the paper regularises nothing. A region is aligned only as far as
+// it is off its own plane or the building's noise excuses: exact models keep their walls, which had
+// moved by up to 4 mm. What noise tilts by some degrees and a much larger region passes through the
+// middle of joins that one: it bent a facade on all layers.
 // Notation: n normal, d offset; family = wall directions that are parallel or orthogonal; azimuth =
 // angle of a horizontal direction from x; tilt = angle of a normal from z. "Canonical" = the one of
 // ±(n, d) whose first non-zero of (z, x, y) is positive.
