@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kShortest = 3e-3;       // metres: shorter edges are contracted …
 constexpr double kShortestPaper = 1e-3;  // … under the paper's rules
-constexpr double kNarrowest = 1.2e-3;    // metres: edges of narrower facets likewise
+constexpr double kNarrowest = 2.5e-3;    // metres: edges of narrower facets likewise
 constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};
 constexpr double kEnough = 0.6;         // share of the outlines on the surface that ends the search
 constexpr double kWorthwhile = 0.1;     // share that another trial must add

@@ -16,12 +16,18 @@ namespace {
 
 using Edge = std::tuple<double, int, int>;
 
-constexpr int kPasses = 5;       // what one contraction forbids another may allow
-constexpr double kLongest = 32;  // times the width: an edge of a narrow facet that may go
+constexpr int kPasses = 5;         // what one contraction forbids another may allow
+constexpr double kLongest = 16;    // times the width: an edge of a narrow facet that may go
+constexpr double kPlanar = 0.998;  // cosine between a triangle and its facet
 
-/// No triangle may turn by more than 60 degrees; the arguments are cross products of its sides.
-bool keeps_direction(const Vec3& before, const Vec3& after) {
-  return after.norm() > 0 && before.dot(after) > 0.5 * before.norm() * after.norm();
+/// No triangle may turn by more than 60 degrees from its facet; `cross`: product of its sides.
+bool keeps_direction(const Vec3& normal, const Vec3& cross) {
+  return cross.norm() > 0 && normal.dot(cross) > 0.5 * cross.norm();
+}
+
+Vec3 cross_of(const PolygonMesh& mesh, const Face& f) {
+  const Vec3& a = mesh.vertices[f[0]];
+  return (mesh.vertices[f[1]] - a).cross(mesh.vertices[f[2]] - a);
 }
 
 /// Contracts edges one at a time; knows which triangles use a vertex.
@@ -45,7 +51,9 @@ class Contraction {
       const Face& f = mesh_.triangles[t];
       Face g = f;
       std::replace(g.begin(), g.end(), from, to);
-      if (!keeps_direction(cross(f), cross(g)) || meets_another(g, shared, moved)) return false;
+      const Vec3& normal = mesh_.facets[mesh_.facet_of_triangle[t]].normal;
+      if (!keeps_direction(normal, cross_of(mesh_, g)) || meets_another(g, shared, moved))
+        return false;
     }
     for (const int t : shared) {
       is_gone_[t] = 1;
@@ -70,10 +78,6 @@ class Contraction {
   }
 
  private:
-  Vec3 cross(const Face& f) const {
-    return (mesh_.vertices[f[1]] - mesh_.vertices[f[0]])
-        .cross(mesh_.vertices[f[2]] - mesh_.vertices[f[0]]);
-  }
   /// A triangle that moves would cut one that stays.
   bool meets_another(const Face& f, const std::vector<int>& shared,
                      const std::vector<int>& moved) const {
@@ -197,6 +201,17 @@ void add_short_edges(const PolygonMesh& mesh, const Face& f, double length,
   }
 }
 
+/// Contracting has turned the triangle away from its facet: it is a facet of its own by now.
+bool is_bent(const PolygonMesh& mesh, std::size_t t) {
+  const Vec3 cross = cross_of(mesh, mesh.triangles[t]);
+  return mesh.facets[mesh.facet_of_triangle[t]].normal.dot(cross) < kPlanar * cross.norm();
+}
+
+bool is_narrow(const PolygonMesh& mesh, std::size_t t, double width) {
+  const PolygonMesh::Facet& facet = mesh.facets[mesh.facet_of_triangle[t]];
+  return is_bent(mesh, t) || measure_facet(mesh, facet).width() < width;
+}
+
 }  // namespace
 
 FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet) {
@@ -225,8 +240,7 @@ int contract_narrow_facets(PolygonMesh& mesh, double width) {
     total += contract(mesh, [&](const PolygonMesh& m) {
       std::vector<Edge> edges;
       for (std::size_t t = 0; t < m.triangles.size(); ++t)
-        if (measure_facet(m, m.facets[m.facet_of_triangle[t]]).width() < width)
-          add_short_edges(m, m.triangles[t], length, edges);
+        if (is_narrow(m, t, width)) add_short_edges(m, m.triangles[t], length, edges);
       return edges;
     });
   return total;

@@ -77,8 +77,8 @@ struct FacetSize {
 };
 FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet);
 
-/// The same for edges of facets narrower than `width` metres, up to 32 times as long: shorter ones
-/// first, and only while the facet stays narrow.
+/// The same for edges of facets narrower than `width` metres, and of triangles that contracting has
+/// bent away from theirs, up to 16 times as long: shorter ones first, and only while that is so.
 int contract_narrow_facets(PolygonMesh& mesh, double width);
 
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest

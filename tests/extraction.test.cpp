@@ -456,3 +456,17 @@ TEST_CASE("narrow facets are contracted where their short edges allow it") {
   CHECK(is_closed_manifold(mesh.triangles));
   for (const auto& facet : mesh.facets) CHECK(measure_facet(mesh, facet).width() > 1);
 }
+
+TEST_CASE("what contracting has bent away from its facet is contracted like a narrow one") {
+  PolygonMesh mesh = chipped_box(0.005);
+  const auto narrow = std::find_if(mesh.facets.begin(), mesh.facets.end(), [&](const auto& f) {
+    return measure_facet(mesh, f).width() < 0.1;
+  });
+  REQUIRE(narrow != mesh.facets.end());
+  const int chip = static_cast<int>(narrow - mesh.facets.begin());
+  for (int& f : mesh.facet_of_triangle)
+    if (f == chip) f = (chip + 1) % 7;
+  CHECK(contract_narrow_facets(mesh, 0.003) == 2);
+  CHECK(mesh.facets.size() == 6);
+  CHECK(is_closed_manifold(mesh.triangles));
+}
