@@ -61,6 +61,13 @@ struct Extraction {
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes, Sight& sight,
                          const ExtractionOptions& options = {});
 
+/// Likewise; where it brings the surface much nearer to all outlines for few facets, sets of
+/// `spares` (rising plane indices, planes of finer layers) join the layer's planes; `joined` says
+/// which planes did.
+Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
+                         const std::vector<std::vector<int>>& spares, Sight& sight,
+                         const ExtractionOptions& options, std::vector<int>& joined);
+
 /// All planes' outline triangles in one soup, in plane order.
 Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle = nullptr);
 

@@ -24,6 +24,7 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
 constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
 constexpr double kVolumeChange = 0.2;      // of the finer layer's volume
+constexpr double kSpareShare = 0.005;      // of all planes' area: smaller ones never join a layer
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -47,16 +48,14 @@ void find_segments(Building& b, const Options& o) {
   b.descriptors = describe_segments(b.planes, b.segments, b.source.name, {.seed = o.seed});
 }
 
-/// The order of cutting: planes of coarse layers first, so that a finer partition refines the
-/// coarser one.
-std::vector<int> cutting_order(const Building& b, int k, const Options& o) {
-  std::vector<int> order;
+/// Layer k's planes join those of coarser layers, which are cut first: a finer partition refines
+/// the coarser one.
+void add_layer_planes(const Building& b, int k, const Options& o, std::vector<int>& order) {
   std::vector<char> is_taken(b.planes.planes.size(), 0);
-  for (int layer = 0; layer <= k; ++layer)
-    for (int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, layer,
-                                  {.is_paper = is_paper(o), .layers = o.layers}))
-      if (!is_taken[plane]) is_taken[plane] = 1, order.push_back(plane);
-  return order;
+  for (const int plane : order) is_taken[plane] = 1;
+  for (const int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, k,
+                                      {.is_paper = is_paper(o), .layers = o.layers}))
+    if (!is_taken[plane]) order.push_back(plane);
 }
 
 /// Metres: what is no detail on layer k.
@@ -66,12 +65,38 @@ double tolerance(const Building& b, int k, const Options& o) {
   return std::max(share, kLeastTolerance) * b.planes.box.diagonal();
 }
 
-void extract(Building& b, Layer& layer, Sight& sight, const Options& o) {
+/// Larger planes that layer 0 lacks, as they could join it: those of each finer segment that is no
+/// form of its own, and those that layer 0's own segments, or none, leave to finer layers.
+std::vector<std::vector<int>> spare_planes(const Building& b, const std::vector<int>& layer) {
+  const std::vector<Plane>& planes = b.planes.planes;
+  const std::size_t segments = b.segments.segments.size();
+  std::vector<std::vector<int>> spares(segments + 1);
+  std::vector<char> is_in(planes.size(), 0);
+  for (const int p : layer) is_in[p] = 1;
+  double total = 0;
+  for (const Plane& p : planes) total += p.area;
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    if (is_in[p] || !(planes[p].area >= kSpareShare * total)) continue;
+    const int s = b.segments.segment_of_plane[p];
+    if (s >= 0 && b.segments.segments[s].form != Form::kPlain) continue;
+    const bool is_left = s < 0 || b.layer_of_segment[s] == 0;
+    spares[is_left ? segments : s].push_back(static_cast<int>(p));
+  }
+  std::erase_if(spares, [](const std::vector<int>& s) { return s.empty(); });
+  return spares;
+}
+
+/// `planes`: in the order of cutting, those of coarser layers, and then of this one too.
+void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, const Options& o) {
   try {
-    const std::vector<int> planes = cutting_order(b, layer.layer, o);
+    add_layer_planes(b, layer.layer, o, planes);
+    std::vector<std::vector<int>> spares;
+    if (!is_paper(o) && layer.layer == 0 && o.layers > 1) spares = spare_planes(b, planes);
+    std::vector<int> joined;
     Extraction result = extract_layer(
-        b.planes, planes, sight,
-        {.is_paper = is_paper(o), .nr = o.nr, .tolerance = tolerance(b, layer.layer, o)});
+        b.planes, planes, spares, sight,
+        {.is_paper = is_paper(o), .nr = o.nr, .tolerance = tolerance(b, layer.layer, o)}, joined);
+    planes.insert(planes.end(), joined.begin(), joined.end());
     layer.mesh = std::move(result.mesh);
     for (const std::string& w : result.warnings)
       b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
@@ -222,13 +247,14 @@ void mesh_building(Building& b, const Options& options) {
   if (!b.failure.empty()) return;
   try {
     Sight sight(b.planes);
+    std::vector<int> planes;
     for (int k = 0; k < options.layers; ++k) {
       Layer layer;
       layer.layer = k;
       layer.segments = static_cast<int>(std::count_if(
           b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
       Stopwatch watch(b.timings.extraction);
-      extract(b, layer, sight, options);
+      extract(b, layer, planes, sight, options);
       b.layers.push_back(std::move(layer));
     }
     keep_chain_sound(b, options);

@@ -470,3 +470,73 @@ TEST_CASE("what contracting has bent away from its facet is contracted like a na
   CHECK(mesh.facets.size() == 6);
   CHECK(is_closed_manifold(mesh.triangles));
 }
+
+namespace {
+
+/// A block of 10 × 12 × 14 m with a passage of 3 × 4 m along y, behind a wall 0.4 m thick.
+Mesh block_with_passage() {
+  Mesh m;
+  const std::vector<Vec2> ring = {{0, 0},   {0.4, 0}, {0.4, 4}, {3.4, 4},
+                                  {3.4, 0}, {10, 0},  {10, 14}, {0, 14}};
+  for (const double y : {0.0, 12.0})
+    for (const Vec2& p : ring) m.vertices.emplace_back(p.x(), y, p.y());
+  for (int i = 0; i < 8; ++i) {
+    const int j = (i + 1) % 8;
+    m.faces.push_back({i, j + 8, j});
+    m.faces.push_back({i, i + 8, j + 8});
+  }
+  for (const Face& f :
+       {Face{7, 0, 1}, Face{7, 1, 2}, Face{7, 2, 3}, Face{7, 3, 6}, Face{6, 3, 5}, Face{3, 4, 5}}) {
+    m.faces.push_back(f);
+    m.faces.push_back({f[2] + 8, f[1] + 8, f[0] + 8});
+  }
+  return m;
+}
+
+int find_plane(const Planes& planes, const Vec3& normal, double offset) {
+  for (std::size_t p = 0; p < planes.planes.size(); ++p)
+    if (planes.planes[p].normal.dot(normal) > 0.999 &&
+        std::abs(planes.planes[p].offset - offset) < 1e-6)
+      return static_cast<int>(p);
+  return -1;
+}
+
+}  // namespace
+
+TEST_CASE("a plane that a layer cannot do without joins it") {
+  const Planes planes = planes_of_mesh(block_with_passage());
+  const int inner = find_plane(planes, {1, 0, 0}, 0.4);
+  REQUIRE(inner >= 0);
+  std::vector<int> layer = all_planes(planes), joined;
+  std::erase(layer, inner);
+  Sight sight(planes);
+  const ExtractionOptions options{.tolerance = 0.2};
+  const double volume = 12 * (140 - 12);
+  const Extraction without = extract_layer(planes, layer, sight, options);
+  CHECK(std::abs(signed_volume(without.mesh.mesh()) - volume) > 12);
+  const Extraction with = extract_layer(planes, layer, {{inner}}, sight, options, joined);
+  expect_solid(with.mesh, volume);
+  CHECK(joined == std::vector<int>{inner});
+}
+
+TEST_CASE("a box on a roof does not join a coarse layer") {
+  const Planes planes =
+      planes_of_mesh(join(box_mesh({0, 0, 0}, {12, 10, 9}), box_mesh({5, 4, 9}, {7, 6, 11})));
+  std::vector<int> layer, box, joined = {1};
+  for (const int p : all_planes(planes)) (planes.planes[p].area < 5 ? box : layer).push_back(p);
+  Sight sight(planes);
+  const Extraction e = extract_layer(planes, layer, {box}, sight, {.tolerance = 0.2}, joined);
+  expect_solid(e.mesh, 12 * 10 * 9);
+  CHECK(joined.empty());
+}
+
+TEST_CASE("a wing joins, however many facets it adds") {
+  const Planes planes =
+      planes_of_mesh(join(box_mesh({0, 0, 0}, {12, 10, 9}), box_mesh({12, 1, 0}, {20, 9, 8})));
+  std::vector<int> layer, wing, joined;
+  for (const int p : all_planes(planes)) (planes.planes[p].area < 65 ? wing : layer).push_back(p);
+  Sight sight(planes);
+  const Extraction e = extract_layer(planes, layer, {wing}, sight, {.tolerance = 0.2}, joined);
+  CHECK(signed_volume(e.mesh.mesh()) == Approx(12 * 10 * 9 + 8 * 8 * 8));
+  CHECK(joined == wing);
+}
