@@ -26,7 +26,7 @@ constexpr double kFacetWorth = 2e-4, kBodyWorth = 8e-4;
 constexpr std::size_t kBodyPlanes = 4;  // so many planes are a body …
 constexpr int kBodyFacets = 5;          // … or so many facets more
 constexpr double kMissed = 3e-4;        // mean distance that spares must make up to be tried
-constexpr int kTrials = 3;
+constexpr int kTrials = 4;
 constexpr int kSamples = 1000;      // of all outlines, and of a mesh
 constexpr std::size_t kGrain = 64;  // queries a task takes
 
@@ -78,6 +78,7 @@ class Joiner {
         sight_(sight),
         options_(options),
         is_tried_(spares.size(), 0),
+        is_joined_(spares.size(), 0),
         points_of_(spares.size()) {
     std::vector<int> plane_of_triangle;
     const Samples outlines = spread(outline_soup(planes, &plane_of_triangle));
@@ -112,6 +113,8 @@ class Joiner {
       best = std::move(next);
       layer = std::move(more);
       distance = next_distance;
+      std::fill(is_tried_.begin(), is_tried_.end(), 0);  // what did not pay alone may pay now
+      is_joined_[chosen] = 1;
     }
     return best;
   }
@@ -127,7 +130,7 @@ class Joiner {
     double most = kMissed;
     std::optional<RayScene> surface;
     for (std::size_t s = 0; s < spares_.size(); ++s) {
-      if (is_tried_[s] || points_of_[s].empty()) continue;
+      if (is_tried_[s] || is_joined_[s] || points_of_[s].empty()) continue;
       if (!surface) surface.emplace(extraction.mesh.mesh());
       const double missed = share() * summed_distance(points_of_[s], *surface);
       if (missed > most) most = missed, chosen = static_cast<int>(s);
@@ -147,7 +150,7 @@ class Joiner {
   const std::vector<std::vector<int>>& spares_;
   Sight& sight_;
   const ExtractionOptions& options_;
-  std::vector<char> is_tried_;
+  std::vector<char> is_tried_, is_joined_;    ///< tried: since the last one joined
   std::vector<std::vector<Vec3>> points_of_;  ///< those of `points_` on each set of spares
   std::vector<Vec3> points_;                  ///< on all outlines
 };
