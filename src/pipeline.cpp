@@ -24,7 +24,8 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
 constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
 constexpr double kVolumeChange = 0.2;      // of the finer layer's volume
-constexpr double kSpareShare = 0.005;      // of all planes' area: smaller ones never join a layer
+constexpr double kSpareShare = 0.005;  // of all planes' area: smaller ones never join a layer …
+constexpr double kSparesShare = 0.01;  // … nor do planes that have less together
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -82,7 +83,11 @@ std::vector<std::vector<int>> spare_planes(const Building& b, const std::vector<
     const bool is_left = s < 0 || b.layer_of_segment[s] == 0;
     spares[is_left ? segments : s].push_back(static_cast<int>(p));
   }
-  std::erase_if(spares, [](const std::vector<int>& s) { return s.empty(); });
+  std::erase_if(spares, [&](const std::vector<int>& set) {
+    double area = 0;
+    for (const int p : set) area += planes[p].area;
+    return set.empty() || area < kSparesShare * total;
+  });
   return spares;
 }
 
