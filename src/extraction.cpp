@@ -19,6 +19,7 @@
 #include "error.h"
 #include "extraction_candidates.h"
 #include "extraction_labels.h"
+#include "extraction_sheets.h"
 #include "extraction_surface.h"
 
 namespace colod {
@@ -38,6 +39,7 @@ constexpr double kSubstantial = 0.05;   // of the largest component: one that is
 constexpr double kNoOther = 2;          // likewise: none is
 constexpr double kFacetPrice = 0.002;   // of tolerance × surface: volume that a facet must shape
 constexpr double kMostMoved = 4;        // times the tolerance: how far saving a facet may go
+constexpr double kExact = 0.031;        // metres: the growing distance of a model without noise
 constexpr int kPruningRounds = 2;
 constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
 
@@ -159,7 +161,7 @@ CuttingPlan leaner(const CuttingPlan& plan, const Attempt& attempt,
 
 /// Planes that only slivers or uncovered facets lie on are left out and the rest is cut anew, while
 /// the other planes keep their surface.
-void prune(CuttingPlan plan, const Planes& planes, Sight& sight, const ExtractionOptions& options,
+void prune(CuttingPlan& plan, const Planes& planes, Sight& sight, const ExtractionOptions& options,
            Attempt& best) {
   for (int round = 0; round < kPruningRounds; ++round) {
     const std::vector<double> before = explained_areas(best, planes.planes.size());
@@ -200,16 +202,41 @@ void simplify(const ExtractionOptions& options, Attempt& attempt) {
   attempt.mended = mended;
 }
 
+/// Sheets that the surface lacks become thin bodies on it.
+void keep_sheets(CuttingPlan plan, const Planes& planes, const std::vector<int>& layer_planes,
+                 const Sight& sight, const ExtractionOptions& options, Attempt& attempt) {
+  const SheetScene scene{planes, attempt.mesh, sight.rays, options.tolerance};
+  const std::vector<Sheet> sheets = find_sheets(scene, layer_planes);
+  if (sheets.empty()) return;
+  const std::size_t first = plan.planes.size();
+  add_slabs(planes, sheets, plan);
+  Partition partition = partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
+  if (partition.warnings.size() > attempt.partition.warnings.size()) return;
+  std::vector<char> is_inside = fill_slabs(scene, partition, sheets, first, attempt.is_inside);
+  double mended = 0;
+  PolygonMesh mesh = extract_surface(partition, is_inside, false, &mended);
+  const double volume = signed_volume(attempt.mesh.mesh());
+  if (!is_closed_manifold(mesh.triangles) ||
+      std::abs(signed_volume(mesh.mesh()) - volume) > kMostLost * volume)
+    return;
+  attempt.partition = std::move(partition);
+  attempt.is_inside = std::move(is_inside);
+  attempt.mesh = std::move(mesh);
+  attempt.mended = mended;
+}
+
 }  // namespace
 
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes, Sight& sight,
                          const ExtractionOptions& options) {
-  const CuttingPlan plan = plan_cuts(planes, layer_planes, sight.rays, options);
+  CuttingPlan plan = plan_cuts(planes, layer_planes, sight.rays, options);
   Attempt attempt = try_plan(plan, planes, sight, options);
   if (attempt.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
   if (options.tolerance > 0) simplify(options, attempt);
+  if (options.keeps_sheets && !options.is_paper && planes.distance <= kExact)
+    keep_sheets(std::move(plan), planes, layer_planes, sight, options, attempt);
   Extraction result;
   result.mesh = std::move(attempt.mesh);
   result.cells = static_cast<std::int64_t>(attempt.partition.cells.size());

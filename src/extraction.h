@@ -20,6 +20,7 @@ struct ExtractionOptions {
   double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut
   double tolerance = 0;     ///< metres, robust: planes whose outline lies this near to a larger one
                             ///< that looks about the same way take its place
+  bool keeps_sheets = false;  ///< robust: what is drawn without thickness becomes a thin body
   int max_cells = 200000;
 };
 

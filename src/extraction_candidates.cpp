@@ -48,21 +48,6 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   return hull;
 }
 
-/// The convex hull of points on a plane, grown within it.
-std::vector<Vec3> grown_hull(const Plane& plane, const std::vector<Vec3>& points, double growth) {
-  const auto [u, v] = plane_basis(plane.normal);
-  std::vector<Vec2> flat;
-  for (const Vec3& p : points)
-    for (int k = 0; k < 8; ++k) {
-      const double angle = (k + 0.5) * std::numbers::pi / 4;
-      flat.push_back(Vec2(u.dot(p), v.dot(p)) + growth * Vec2(std::cos(angle), std::sin(angle)));
-    }
-  std::vector<Vec3> hull;
-  for (const Vec2& q : convex_hull(std::move(flat)))
-    hull.push_back(q.x() * u + q.y() * v + plane.offset * plane.normal);
-  return hull;
-}
-
 /// A range of all outline vertices of the given planes.
 Box outline_box(const Planes& planes, const std::vector<int>& which) {
   Box box;
@@ -118,6 +103,20 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
 }
 
 }  // namespace
+
+std::vector<Vec3> grown_hull(const Plane& plane, const std::vector<Vec3>& points, double growth) {
+  const auto [u, v] = plane_basis(plane.normal);
+  std::vector<Vec2> flat;
+  for (const Vec3& p : points)
+    for (int k = 0; k < 8; ++k) {
+      const double angle = (k + 0.5) * std::numbers::pi / 4;
+      flat.push_back(Vec2(u.dot(p), v.dot(p)) + growth * Vec2(std::cos(angle), std::sin(angle)));
+    }
+  std::vector<Vec3> hull;
+  for (const Vec2& q : convex_hull(std::move(flat)))
+    hull.push_back(q.x() * u + q.y() * v + plane.offset * plane.normal);
+  return hull;
+}
 
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const RayScene& rays,
                       const ExtractionOptions& options) {

@@ -32,6 +32,9 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes
 std::vector<int> find_leaders(const Planes& planes, const std::vector<int>& layer_planes,
                               double tolerance);
 
+/// The convex hull of points on a plane, grown within it by `growth` metres.
+std::vector<Vec3> grown_hull(const Plane& plane, const std::vector<Vec3>& points, double growth);
+
 /// Appends vertical candidates under roof borders that no plane supports. \pre the sides are in
 /// `plan`.
 void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,

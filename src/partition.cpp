@@ -40,6 +40,7 @@ class Tree {
   Tree(Partition& partition, int max_cells)
       : partition_(partition), splitter_(partition), max_cells_(std::max(max_cells, 1)) {
     cells_.push_back(splitter_.box_cell());
+    split_from_.push_back(-1);
     nodes_.push_back({});
     for (const Partition::IntPlane& plane : partition.planes) {
       const Vec3 n(plane.normal[0], plane.normal[1], plane.normal[2]);
@@ -74,6 +75,7 @@ class Tree {
   Splitter splitter_;
   std::size_t max_cells_;
   std::vector<ConvexCell> cells_;
+  std::vector<int> split_from_;
   std::vector<Node> nodes_;
   std::vector<Vec3> normals_;  ///< per plane, unit
   std::vector<double> offsets_;
@@ -123,6 +125,7 @@ void Tree::split_leaf(int node, int plane) {
   Ring ring;
   if (!splitter_.split(cells_[behind], plane, positive, ring)) return;
   cells_.push_back(std::move(positive));
+  split_from_.push_back(behind);
   const int child = static_cast<int>(nodes_.size());
   nodes_[node].plane = plane;
   nodes_[node].child = {child, child + 1};
@@ -144,8 +147,10 @@ void Tree::add_points() {
 
 void Tree::measure_cells() {
   add_points();
-  for (const ConvexCell& cell : cells_)
-    partition_.cells.push_back(measure(cell, partition_.points));
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    partition_.cells.push_back(measure(cells_[c], partition_.points));
+    partition_.cells.back().split_from = split_from_[c];
+  }
   cells_ = {};
 }
 

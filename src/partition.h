@@ -60,6 +60,8 @@ struct Partition {
     Vec3 centroid;
     double volume = 0;  ///< m³; the volumes of all cells sum to the box's
     Box box;
+    int split_from = -1;  ///< the cell of a lower index that it was a part of until a plane parted
+                          ///< them; −1: none, the first cell
   };
   std::vector<Cell> cells;
 

@@ -98,9 +98,12 @@ void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, 
     std::vector<std::vector<int>> spares;
     if (!is_paper(o) && layer.layer == 0 && o.layers > 1) spares = spare_planes(b, planes);
     std::vector<int> joined;
-    Extraction result = extract_layer(
-        b.planes, planes, spares, sight,
-        {.is_paper = is_paper(o), .nr = o.nr, .tolerance = tolerance(b, layer.layer, o)}, joined);
+    Extraction result = extract_layer(b.planes, planes, spares, sight,
+                                      {.is_paper = is_paper(o),
+                                       .nr = o.nr,
+                                       .tolerance = tolerance(b, layer.layer, o),
+                                       .keeps_sheets = layer.layer + 1 == o.layers},
+                                      joined);
     planes.insert(planes.end(), joined.begin(), joined.end());
     layer.mesh = std::move(result.mesh);
     for (const std::string& w : result.warnings)

@@ -132,6 +132,14 @@ Mesh l_shape() {
   return m;
 }
 
+/// Two triangles without thickness.
+Mesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v) {
+  Mesh m;
+  m.vertices = {corner, corner + u, corner + u + v, corner + v};
+  m.faces = {{0, 1, 2}, {0, 2, 3}};
+  return m;
+}
+
 }  // namespace
 
 TEST_CASE("a box is a box") {
@@ -539,4 +547,41 @@ TEST_CASE("a wing joins, however many facets it adds") {
   const Extraction e = extract_layer(planes, layer, {wing}, sight, {.tolerance = 0.2}, joined);
   CHECK(signed_volume(e.mesh.mesh()) == Approx(12 * 10 * 9 + 8 * 8 * 8));
   CHECK(joined == wing);
+}
+
+TEST_CASE("a sheet that stands out of the building becomes a thin body") {
+  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 5});
+  const Mesh canopy = sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0});
+  const Mesh fin = sheet_mesh({0, 0, 5}, {8, 0, 0}, {0, 0, 1});  // the front wall goes on
+  expect_solid(extract(join(house, canopy)).mesh, 240);
+  const PolygonMesh with = extract(join(house, canopy), {.keeps_sheets = true}).mesh;
+  expect_solid(with, 240 + 2 * 1.5 * 0.08);
+  CHECK(with.facets.size() == 11);
+  const PolygonMesh both = extract(join(join(house, canopy), fin), {.keeps_sheets = true}).mesh;
+  expect_solid(both, 240 + 2 * 1.5 * 0.08 + 8 * 1 * 0.08);
+  CHECK(both.facets.size() == 13);
+}
+
+TEST_CASE("sheets that meet are joined at their corners") {
+  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 6});
+  Mesh screen = sheet_mesh({2, -1.2, 2}, {3, 0, 0}, {0, 0, 2});  // front and both sides
+  screen = join(screen, sheet_mesh({2, 0, 2}, {0, -1.2, 0}, {0, 0, 2}));
+  screen = join(screen, sheet_mesh({5, -1.2, 2}, {0, 1.2, 0}, {0, 0, 2}));
+  const PolygonMesh mesh = extract(join(house, screen), {.keeps_sheets = true}).mesh;
+  expect_solid(mesh, 288 + 2 * (3 * 1.2 - (3 - 0.16) * (1.2 - 0.08)));
+  CHECK(mesh.facets.size() == 14);  // three outer, three inner, top and bottom
+}
+
+TEST_CASE("steps, sheets that touch nothing and noise are no thin bodies") {
+  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 5});
+  const Mesh step = join(house, sheet_mesh({3, -1.5, 0.3}, {2, 0, 0}, {0, 1.5, 0}));
+  const double with_step = signed_volume(extract(step).mesh.mesh());
+  const ExtractionOptions options{.keeps_sheets = true};
+  expect_solid(extract(step, options).mesh, with_step);
+  expect_solid(extract(join(house, sheet_mesh({3, -2.5, 3}, {2, 0, 0}, {0, 1.5, 0})), options).mesh,
+               240);
+  Planes planes = planes_of_mesh(join(house, sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0})));
+  planes.distance = 0.1;  // found in noise
+  Sight sight(planes);
+  expect_solid(extract_layer(planes, all_planes(planes), sight, options).mesh, 240);
 }

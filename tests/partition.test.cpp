@@ -184,6 +184,26 @@ TEST_CASE("coarse planes first: finer planes only refine the cells") {
   }
 }
 
+TEST_CASE("a cell says which one it was split from") {
+  std::vector<CutPlane> planes = {{Vec3::UnitX(), 1, {}, -1}, {Vec3::UnitY(), 1, {}, -1}};
+  Box box;
+  box.extend(Vec3(0, 0, 0)), box.extend(Vec3(2, 2, 2));
+  const Partition before = partition_space(planes, box);
+  planes.push_back({Vec3(1, 2, 3).normalized(), 3, {}, -1});
+  const Partition after = partition_space(planes, box);
+  REQUIRE(after.cells.size() > before.cells.size());
+  CHECK(after.cells[0].split_from == -1);
+  std::vector<double> volume(before.cells.size(), 0);
+  for (std::size_t c = 0; c < after.cells.size(); ++c) {
+    CHECK(after.cells[c].split_from < static_cast<int>(c));
+    int from = static_cast<int>(c);
+    while (from >= static_cast<int>(volume.size())) from = after.cells[from].split_from;
+    volume[from] += after.cells[c].volume;
+  }
+  for (std::size_t c = 0; c < volume.size(); ++c)
+    CHECK(volume[c] == Approx(before.cells[c].volume));
+}
+
 TEST_CASE("building-like planes make closed convex cells") {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Partition p = partition_space(building_like(200, seed), building_box());
