@@ -16,6 +16,7 @@
 
 #include "extraction.h"
 #include "parallel.h"
+#include "spread.h"
 
 namespace colod {
 namespace {
@@ -46,8 +47,8 @@ Samples spread(const Mesh& mesh) {
     const auto found = std::upper_bound(until.begin(), until.end(), (i + 0.5) / kSamples * total);
     const auto last = static_cast<std::ptrdiff_t>(until.size()) - 1;
     const int face = static_cast<int>(std::min(found - until.begin(), last));
-    const double r = std::sqrt(std::fmod(0.5 + i * 0.7548776662466927, 1.0));
-    const double t = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
+    const Vec2 at = spread_in_square(i, 0.5);
+    const double r = std::sqrt(at.x()), t = at.y();
     const auto& [a, b, c] = mesh.faces[face];
     samples.points.push_back((1 - r) * mesh.vertices[a] + r * (1 - t) * mesh.vertices[b] +
                              r * t * mesh.vertices[c]);

@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "parallel.h"
+#include "spread.h"
 
 namespace colod {
 namespace {
@@ -96,11 +97,7 @@ std::vector<Vec3> places_on(const Vec3& a, const Vec3& b, const Vec3& c, double 
   const double spacing = std::max(kSpacing, std::sqrt(whole / kMostPlaces));
   const int count = std::max(1, static_cast<int>(area / (spacing * spacing)));
   std::vector<Vec3> places;
-  for (int k = 1; k <= count; ++k) {  // powers of the golden ratio's kin, folded into the triangle
-    double s = std::fmod(k * 0.7548776662466927, 1.0), u = std::fmod(k * 0.5698402909980532, 1.0);
-    if (s + u > 1) s = 1 - s, u = 1 - u;
-    places.push_back(a + s * (b - a) + u * (c - a));
-  }
+  for (int k = 1; k <= count; ++k) places.push_back(spread_on_triangle(a, b, c, k));
   if (count == 1) places[0] = (a + b + c) / 3;
   return places;
 }

@@ -9,6 +9,7 @@
 #include "parallel.h"
 #include "planes_parts.h"
 #include "rays.h"
+#include "spread.h"
 
 namespace colod::regions {
 namespace {
@@ -53,11 +54,7 @@ std::vector<Vec3> spread_samples(const Outline& outline, int count) {
     const double area = 0.5 * (b - a).cross(c - a).norm();
     while (total > 0 && static_cast<int>(samples.size()) < count &&
            (samples.size() + 0.5) / count * total <= passed + area) {
-      // Low-discrepancy barycentric coordinates (golden ratio powers), folded into the triangle.
-      const double k = static_cast<double>(samples.size()) + 1;
-      double s = std::fmod(k * 0.7548776662466927, 1.0), u = std::fmod(k * 0.5698402909980532, 1.0);
-      if (s + u > 1) s = 1 - s, u = 1 - u;
-      samples.push_back(a + s * (b - a) + u * (c - a));
+      samples.push_back(spread_on_triangle(a, b, c, static_cast<double>(samples.size()) + 1));
     }
     passed += area;
   }

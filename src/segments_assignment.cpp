@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "parallel.h"
+#include "spread.h"
 
 namespace colod {
 namespace {
@@ -39,13 +40,8 @@ std::vector<Sample> sample_outline(const Outline& outline, double spacing) {
     if (!(area > 0)) continue;
     const int n = std::max(1, static_cast<int>(std::ceil(area / share)));
     const Vec3 &a = soup.vertices[f[0]], &b = soup.vertices[f[1]], &c = soup.vertices[f[2]];
-    for (int i = 0; i < n; ++i) {
-      // Starts at the centroid; folds the unit square's upper half into the triangle.
-      double u = 1.0 / 3 + i * 0.7548776662466927, v = 1.0 / 3 + i * 0.5698402909980532;
-      u -= std::floor(u), v -= std::floor(v);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      samples.push_back({a + u * (b - a) + v * (c - a), area / n});
-    }
+    for (int i = 0; i < n; ++i)  // from the centroid on
+      samples.push_back({spread_on_triangle(a, b, c, i, 1.0 / 3), area / n});
   }
   return samples;
 }
