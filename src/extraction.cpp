@@ -39,7 +39,6 @@ constexpr double kSubstantial = 0.05;   // of the largest component: one that is
 constexpr double kNoOther = 2;          // likewise: none is
 constexpr double kFacetPrice = 0.002;   // of tolerance × surface: volume that a facet must shape
 constexpr double kMostMoved = 4;        // times the tolerance: how far saving a facet may go
-constexpr double kExact = 0.031;        // metres: the growing distance of a model without noise
 constexpr int kPruningRounds = 2;
 constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
 
@@ -235,7 +234,7 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
   if (options.tolerance > 0) simplify(options, attempt);
-  if (options.keeps_sheets && !options.is_paper && planes.distance <= kExact)
+  if (options.keeps_sheets && !options.is_paper && planes.distance <= kLeastDistance)
     keep_sheets(std::move(plan), planes, layer_planes, sight, options, attempt);
   Extraction result;
   result.mesh = std::move(attempt.mesh);

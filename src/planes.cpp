@@ -21,12 +21,11 @@ using namespace regions;
 // Three residuals of a whole wall, which on scans is 2.3 times that of 1.5 m of it (0.012 m against
 // 0.027 m on simulated photogrammetry).
 constexpr double kNoiseFactor = 7;
-constexpr double kLeastDistance = 0.03;  // metres
-constexpr double kMoveShare = 1.0 / 3;   // of the growing distance: what aligning may cost
-constexpr double kLeastMove = 0.0005;    // metres: likewise without noise; files have mm
-constexpr double kMostDistance = 0.2;    // metres
-constexpr double kLeastShare = 1e-4;     // of the building's area: the least region
-constexpr double kMostShare = 0.01;      // a region this large is never too small
+constexpr double kMoveShare = 1.0 / 3;  // of the growing distance: what aligning may cost
+constexpr double kLeastMove = 0.0005;   // metres: likewise without noise; files have mm
+constexpr double kMostDistance = 0.2;   // metres
+constexpr double kLeastShare = 1e-4;    // of the building's area: the least region
+constexpr double kMostShare = 0.01;     // a region this large is never too small
 constexpr std::size_t kMostPlanes = 4000;
 constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
 

@@ -8,6 +8,10 @@
 
 namespace colod {
 
+/// Metres: planes grow at least this far under robust rules, on small buildings 2 % of the
+/// diagonal.
+constexpr double kLeastDistance = 0.03;
+
 struct PlaneOptions {
   bool is_paper = false;  ///< to the letter: CGAL region growing at
                           ///< `distance`/`angle_deg`/`min_points`, nothing else
@@ -22,7 +26,8 @@ struct Planes {
   std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none
   Box box;                         ///< of the source without its floaters
   double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
-  double distance = 0;    ///< metres: the region growing distance used
+  double distance = 0;    ///< metres: the region growing distance used; kLeastDistance or less
+                          ///< where no noise asks for more
   std::vector<std::string> warnings;
 };
 
