@@ -21,6 +21,8 @@ namespace {
 constexpr double kLeastTouch = 0.3;     // metres
 constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together
 constexpr std::size_t kFewPlanes = 12;  // of layer 0's segments: too few to be worth thinning out
+constexpr double kSpareShare = 0.005;   // of all planes' area: smaller ones never join layer 0 …
+constexpr double kSparesShare = 0.01;   // … nor do planes that have less together
 
 struct Piece {
   Vec3 a, b, c;
@@ -172,6 +174,31 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
                                           planes.planes[q].outline, boxes[q], reach);
     if (is_wanted) result.push_back(static_cast<int>(p));
   }
+  return result;
+}
+
+std::vector<std::vector<int>> spare_planes(const Planes& planes, const Segments& segments,
+                                           const std::vector<int>& layer_of_segment,
+                                           const std::vector<int>& layer0_planes) {
+  const std::size_t none = segments.segments.size();
+  std::vector<std::vector<int>> spares(none + 1);
+  std::vector<double> area(spares.size(), 0);
+  std::vector<char> is_in(planes.planes.size(), 0);
+  for (const int p : layer0_planes) is_in[p] = 1;
+  double total = 0;
+  for (const Plane& p : planes.planes) total += sane_area(p);
+  for (std::size_t p = 0; p < planes.planes.size(); ++p) {
+    const double own = sane_area(planes.planes[p]);
+    if (is_in[p] || own < kSpareShare * total) continue;
+    const int s = segments.segment_of_plane[p];
+    if (s >= 0 && segments.segments[s].form != Form::kPlain) continue;
+    const std::size_t set = s < 0 || layer_of_segment[s] == 0 ? none : s;
+    spares[set].push_back(static_cast<int>(p)), area[set] += own;
+  }
+  std::vector<std::vector<int>> result;
+  for (std::size_t set = 0; set < spares.size(); ++set)
+    if (!spares[set].empty() && area[set] >= kSparesShare * total)
+      result.push_back(std::move(spares[set]));
   return result;
 }
 

@@ -24,8 +24,6 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
 constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
 constexpr double kVolumeChange = 0.2;      // of the finer layer's volume
-constexpr double kSpareShare = 0.005;  // of all planes' area: smaller ones never join a layer …
-constexpr double kSparesShare = 0.01;  // … nor do planes that have less together
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -66,37 +64,13 @@ double tolerance(const Building& b, int k, const Options& o) {
   return std::max(share, kLeastTolerance) * b.planes.box.diagonal();
 }
 
-/// Larger planes that layer 0 lacks, as they could join it: those of each finer segment that is no
-/// form of its own, and those that layer 0's own segments, or none, leave to finer layers.
-std::vector<std::vector<int>> spare_planes(const Building& b, const std::vector<int>& layer) {
-  const std::vector<Plane>& planes = b.planes.planes;
-  const std::size_t segments = b.segments.segments.size();
-  std::vector<std::vector<int>> spares(segments + 1);
-  std::vector<char> is_in(planes.size(), 0);
-  for (const int p : layer) is_in[p] = 1;
-  double total = 0;
-  for (const Plane& p : planes) total += p.area;
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    if (is_in[p] || !(planes[p].area >= kSpareShare * total)) continue;
-    const int s = b.segments.segment_of_plane[p];
-    if (s >= 0 && b.segments.segments[s].form != Form::kPlain) continue;
-    const bool is_left = s < 0 || b.layer_of_segment[s] == 0;
-    spares[is_left ? segments : s].push_back(static_cast<int>(p));
-  }
-  std::erase_if(spares, [&](const std::vector<int>& set) {
-    double area = 0;
-    for (const int p : set) area += planes[p].area;
-    return set.empty() || area < kSparesShare * total;
-  });
-  return spares;
-}
-
 /// `planes`: in the order of cutting, those of coarser layers, and then of this one too.
 void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, const Options& o) {
   try {
     add_layer_planes(b, layer.layer, o, planes);
     std::vector<std::vector<int>> spares;
-    if (!is_paper(o) && layer.layer == 0 && o.layers > 1) spares = spare_planes(b, planes);
+    if (!is_paper(o) && layer.layer == 0 && o.layers > 1)
+      spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
     std::vector<int> joined;
     Extraction result = extract_layer(b.planes, planes, spares, sight,
                                       {.is_paper = is_paper(o),

@@ -262,6 +262,26 @@ TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
   CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8 + 9);
 }
 
+TEST_CASE("spares are the larger planes that layer 0 lacks, a set a plain segment") {
+  Planes planes;
+  Segments segments;
+  segments.segments.resize(4);
+  const auto add = [&](double area, int segment) {
+    Plane p;
+    p.area = area;
+    if (segment >= 0) segments.segments[segment].planes.push_back(int(planes.planes.size()));
+    segments.segment_of_plane.push_back(segment);
+    planes.planes.push_back(p);
+  };
+  for (const double area : {50.0, 20.0, 5.0}) add(area, 0);  // the last one waits
+  for (const double area : {8.0, 0.3, 6.0}) add(area, 1);
+  add(4, 2), add(0.9, 3), add(5.8, -1);
+  segments.segments[2].form = Form::kBay;
+  const auto spares = spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1});
+  CHECK(spares == std::vector<std::vector<int>>{{3, 5}, {2, 8}});
+  CHECK(spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1, 2, 3, 5, 8}).empty());
+}
+
 TEST_CASE("the planes of a layer are among those of the next") {
   std::mt19937_64 random(3);
   for (int trial = 0; trial < 10; ++trial) {
