@@ -15,11 +15,11 @@ const fs::path kRoot = COLOD_SOURCE_DIR;
 
 /// Rooms in the order in which data flow (src/README.md), then what stands beside or behind them.
 const std::vector<std::string> kRooms = {
-    "geometry",  "error",        "options",  "parallel",      "stopwatch",   "union_find",
-    "mesh_io",   "frame",        "ground",   "intersections", "rays",        "planes",
-    "hollows",   "visibility",   "segments", "similarity",    "selection",   "clustering",
-    "partition", "extraction",   "metrics",  "light_field",   "consistency", "synth",
-    "preview",   "georeference", "pipeline", "report",        "store"};
+    "geometry",   "error",     "options",      "parallel", "stopwatch",     "spread",
+    "union_find", "mesh_io",   "frame",        "ground",   "intersections", "rays",
+    "planes",     "hollows",   "visibility",   "segments", "similarity",    "selection",
+    "clustering", "partition", "extraction",   "metrics",  "light_field",   "consistency",
+    "synth",      "preview",   "georeference", "pipeline", "report",        "store"};
 
 struct Include {
   fs::path file;     // relative to the repository
