@@ -5,6 +5,7 @@
 // stays closed, keeps its directions and cuts itself nowhere.
 // Notation: an edge is (length, vertex, vertex), the vertices rising.
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -16,8 +17,9 @@ namespace {
 
 using Edge = std::tuple<double, int, int>;
 
-constexpr int kPasses = 5;         // what one contraction forbids another may allow
-constexpr double kLongest = 16;    // times the width: an edge of a narrow facet that may go
+constexpr int kPasses = 5;       // what one contraction forbids another may allow
+constexpr double kLongest = 16;  // times the width: an edge of a narrow facet that may go
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kPlanar = 0.998;  // cosine between a triangle and its facet
 
 /// No triangle may turn by more than 60 degrees from its facet; `cross`: product of its sides.
@@ -41,8 +43,9 @@ class Contraction {
     for (std::size_t v = 0; v < target_.size(); ++v) target_[v] = static_cast<int>(v);
   }
 
-  /// Moves `from` onto `to` if that is allowed.
-  bool contract(int from, int to) {
+  /// Moves `from` onto `to` if that is allowed; `to` must lie within `depth` metres of the planes
+  /// of all triangles that move.
+  bool contract(int from, int to, double depth) {
     std::vector<int> shared, moved;
     for (const int t : triangles_of_[from]) (has(t, to) ? shared : moved).push_back(t);
     if (shared.size() != 2 || link(from, to).size() != 2 || is_too_small(shared, from, to))
@@ -52,7 +55,8 @@ class Contraction {
       Face g = f;
       std::replace(g.begin(), g.end(), from, to);
       const Vec3& normal = mesh_.facets[mesh_.facet_of_triangle[t]].normal;
-      if (!keeps_direction(normal, cross_of(mesh_, g)) || meets_another(g, shared, moved))
+      if (!keeps_direction(normal, cross_of(mesh_, g)) || distance_from(f, to) > depth ||
+          meets_another(g, shared, moved))
         return false;
     }
     for (const int t : shared) {
@@ -78,6 +82,11 @@ class Contraction {
   }
 
  private:
+  double distance_from(const Face& f, int v) const {
+    const Vec3 cross = cross_of(mesh_, f);
+    const double length = cross.norm();
+    return length > 0 ? std::abs(cross.dot(mesh_.vertices[v] - mesh_.vertices[f[0]])) / length : 0;
+  }
   /// A triangle that moves would cut one that stays.
   bool meets_another(const Face& f, const std::vector<int>& shared,
                      const std::vector<int>& moved) const {
@@ -171,7 +180,7 @@ void Contraction::finish() {
 
 /// Contracts what `find` names, shortest first, and asks again; returns how many edges went.
 template <class Find>
-int contract(PolygonMesh& mesh, const Find& find) {
+int contract(PolygonMesh& mesh, double depth, const Find& find) {
   int total = 0;
   for (int pass = 0, count = 1; pass < kPasses && count > 0; ++pass, total += count) {
     std::vector<Edge> edges = find(mesh);
@@ -184,7 +193,7 @@ int contract(PolygonMesh& mesh, const Find& find) {
       // The vertex with fewer planes moves, so that as few facets as possible bend.
       const bool a_moves = contraction.facets_at(a) <= contraction.facets_at(b);
       const int from = a_moves ? a : b, to = a_moves ? b : a;
-      count += contraction.contract(from, to) || contraction.contract(to, from);
+      count += contraction.contract(from, to, depth) || contraction.contract(to, from, depth);
     }
     contraction.finish();
   }
@@ -227,7 +236,7 @@ FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet
 }
 
 int contract_short_edges(PolygonMesh& mesh, double length) {
-  return contract(mesh, [length](const PolygonMesh& m) {
+  return contract(mesh, kNoLimit, [length](const PolygonMesh& m) {
     std::vector<Edge> edges;
     for (const Face& f : m.triangles) add_short_edges(m, f, length, edges);
     return edges;
@@ -235,15 +244,18 @@ int contract_short_edges(PolygonMesh& mesh, double length) {
 }
 
 int contract_narrow_facets(PolygonMesh& mesh, double width) {
-  int total = 0;
-  for (double length = 2 * width; length <= kLongest * width; length *= 2)
-    total += contract(mesh, [&](const PolygonMesh& m) {
+  const auto contract_up_to = [&](double length, double depth) {
+    return contract(mesh, depth, [&](const PolygonMesh& m) {
       std::vector<Edge> edges;
       for (std::size_t t = 0; t < m.triangles.size(); ++t)
         if (is_narrow(m, t, width)) add_short_edges(m, m.triangles[t], length, edges);
       return edges;
     });
-  return total;
+  };
+  int total = 0;
+  for (double length = 2 * width; length <= kLongest * width; length *= 2)
+    total += contract_up_to(length, kNoLimit);
+  return total + contract_up_to(kNoLimit, width);
 }
 
 }  // namespace colod

@@ -78,7 +78,8 @@ struct FacetSize {
 FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet);
 
 /// The same for edges of facets narrower than `width` metres, and of triangles that contracting has
-/// bent away from theirs, up to 16 times as long: shorter ones first, and only while that is so.
+/// bent away from theirs, up to 16 times as long: shorter ones first, and only while that is so. In
+/// the end longer ones, where no triangle's plane moves by more than `width`.
 int contract_narrow_facets(PolygonMesh& mesh, double width);
 
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest
