@@ -39,6 +39,7 @@
 #include "../src/mesh_io.h"
 #include "../src/metrics.h"
 #include "../src/planes.h"
+#include "../src/spread.h"
 
 using namespace colod;
 
@@ -204,12 +205,7 @@ std::vector<std::tuple<Point, Kernel::Vector_3, int>> sample_planes(const Planes
       const Vec3 &a = plane.outline.vertices[f[0]], &b = plane.outline.vertices[f[1]],
                  &c = plane.outline.vertices[f[2]];
       while (static_cast<double>(samples.size()) + 0.5 < until) {
-        // Two golden steps spread the samples over the triangle.
-        const double i = static_cast<double>(samples.size());
-        double u = std::fmod(0.7548776662466927 * i, 1.0),
-               v = std::fmod(0.5698402909980532 * i, 1.0);
-        if (u + v > 1) u = 1 - u, v = 1 - v;
-        const Vec3 x = a + u * (b - a) + v * (c - a);
+        const Vec3 x = spread_on_triangle(a, b, c, static_cast<double>(samples.size()));
         samples.emplace_back(Point(x.x(), x.y(), x.z()), normal, static_cast<int>(p));
       }
     }
@@ -287,6 +283,7 @@ nlohmann::ordered_json measure(const DistanceGauge& gauge, const LightFields* ow
                               {"self_intersections", v.self_intersections},
                               {"least_width", v.least_width},
                               {"components", v.components},
+                              {"enclosed_components", v.enclosed_components},
                               {"volume", v.volume},
                               {"hausdorff_relative", d.relative},
                               {"mean_distance", d.mean_a_to_b},

@@ -28,6 +28,8 @@ struct Validity {
   std::int64_t degenerate_faces = 0;  ///< zero area in doubles, or a coordinate that is not finite
                                       ///< (counted here and ignored elsewhere)
   int components = 0;                 ///< sets of faces connected over edges
+  int enclosed_components = 0;        ///< watertight: those inside another one, cavities and what
+                                      ///< stands in them: nobody sees them from outside; else 0
   double volume = 0;                  ///< m³, signed
   double area = 0;
 };

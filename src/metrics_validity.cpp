@@ -1,6 +1,7 @@
 // *Based on:* the usual definition of a 2-manifold by fans of faces around vertices; self
 // intersections as in CGAL's Polygon Mesh Processing (boxes, then exact predicates by the number of
-// shared vertices), on a soup instead of a half-edge mesh so that non-manifold input is accepted.
+// shared vertices), on a soup instead of a half-edge mesh so that non-manifold input is accepted;
+// inside is where the winding number is not 0.
 //
 // *Differs:* no --rules here.
 //
@@ -27,6 +28,10 @@ constexpr double kCoplanarDistance = 1e-4;  // m
 constexpr double kCoplanarAngleDeg = 0.1;
 constexpr double kReliableHeight = 5e-3;       // m; a thinner face's normal says little
 constexpr std::size_t kPairsAtOnce = 1 << 20;  // bounds the memory of the candidate pairs
+
+CGAL::Bbox_3 to_cgal(const Box& box) {
+  return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
+}
 
 /// The faces worth looking at, over welded vertices.
 struct Welded {
@@ -123,12 +128,67 @@ std::int64_t count_nonmanifold_vertices(const Welded& m, const std::vector<EdgeU
   return std::count_if(fans_of.begin(), fans_of.end(), [](int n) { return n > 1; });
 }
 
-int count_components(const Welded& m, const std::vector<EdgeUse>& uses) {
+/// Per face the number of its component, counted from 0.
+std::vector<int> find_components(const Welded& m, const std::vector<EdgeUse>& uses) {
   UnionFind sets(m.faces.size());
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first + 1; i < last; ++i) sets.unite(uses[first].face, uses[i].face);
   });
-  return sets.count_sets();
+  std::vector<int> component(m.faces.size());
+  int count = 0;
+  for (int f = 0; f < static_cast<int>(m.faces.size()); ++f) {
+    const int root = sets.find(f);  // the set's lowest face: it has its number by now
+    component[f] = root == f ? count++ : component[root];
+  }
+  return component;
+}
+
+/// How often a closed surface winds around a point that is not on it: 0 outside (solid angles: van
+/// Oosterom & Strackee, "The solid angle of a plane triangle", 1983).
+double winding_number(const Welded& m, const std::vector<int>& faces, const Vec3& x) {
+  double sum = 0;
+  for (const int f : faces) {
+    const Vec3 a = m.points[m.faces[f][0]] - x, b = m.points[m.faces[f][1]] - x,
+               c = m.points[m.faces[f][2]] - x;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (2 * M_PI);
+}
+
+/// Components that lie inside another one. \pre `m` is watertight.
+int count_enclosed(const Welded& m, const std::vector<int>& component, int components) {
+  std::vector<std::vector<int>> faces(components);
+  for (std::size_t f = 0; f < component.size(); ++f)
+    faces[component[f]].push_back(static_cast<int>(f));
+  using ComponentBox =
+      CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const std::vector<int>*>;
+  std::vector<ComponentBox> boxes;
+  for (const std::vector<int>& own : faces) {
+    Box box;
+    for (const int f : own)
+      for (const int v : m.faces[f]) box.extend(m.points[v]);
+    boxes.emplace_back(to_cgal(box), &own);
+  }
+  std::vector<char> is_enclosed(components, 0);
+  const auto look = [&](const ComponentBox& inner, const ComponentBox& outer) {
+    const std::size_t id = inner.handle() - faces.data();
+    for (int i = 0; i < 3; ++i)
+      if (inner.min_coord(i) < outer.min_coord(i) || inner.max_coord(i) > outer.max_coord(i))
+        return;
+    if (is_enclosed[id]) return;
+    const Face& f =
+        m.faces[inner.handle()->front()];  // may touch at its corners, not in its middle
+    const Vec3 x = (m.points[f[0]] + m.points[f[1]] + m.points[f[2]]) / 3;
+    is_enclosed[id] = std::abs(winding_number(m, *outer.handle(), x)) > 0.5;
+  };
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const ComponentBox& a, const ComponentBox& b) {
+                                  look(a, b);
+                                  look(b, a);
+                                });
+  return static_cast<int>(std::count(is_enclosed.begin(), is_enclosed.end(), 1));
 }
 
 /// Neighbours over edges with exactly two faces, −1: none.
@@ -238,9 +298,7 @@ std::int64_t count_self_intersections(const Welded& m) {
     if (is_degenerate(m.points, m.faces[f])) continue;
     Box box;
     for (int v : m.faces[f]) box.extend(m.points[v]);
-    boxes.emplace_back(
-        CGAL::Bbox_3(box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()),
-        &m.faces[f]);
+    boxes.emplace_back(to_cgal(box), &m.faces[f]);
   }
   std::int64_t found = 0;
   std::vector<std::pair<int, int>> pairs;
@@ -272,13 +330,16 @@ Validity check_validity(const Mesh& mesh, bool check_self_intersections) {
   }
   count_edges(uses, v);
   v.nonmanifold_vertices = count_nonmanifold_vertices(welded, uses);
-  v.components = count_components(welded, uses);
+  const std::vector<int> component = find_components(welded, uses);
+  for (const int c : component) v.components = std::max(v.components, c + 1);
   measure_polygons(welded, uses, shapes, v);
   v.volume = signed_volume({welded.points, welded.faces});
   const bool has_faces = !welded.faces.empty();
   v.is_manifold = has_faces && v.nonmanifold_edges == 0 && v.nonmanifold_vertices == 0;
   v.is_watertight = has_faces && v.boundary_edges == 0 && v.nonmanifold_edges == 0 &&
                     v.misoriented_edges == 0 && welded.collapsed == 0;
+  if (v.is_watertight && v.components > 1)
+    v.enclosed_components = count_enclosed(welded, component, v.components);
   if (check_self_intersections) v.self_intersections = count_self_intersections(welded);
   return v;
 }

@@ -35,6 +35,8 @@ Json layer_json(const Layer& layer) {
   json["watertight"] = layer.validity.is_watertight;
   json["manifold"] = layer.validity.is_manifold;
   json["self_intersections"] = layer.validity.self_intersections;
+  json["components"] = layer.validity.components;
+  json["enclosed_components"] = layer.validity.enclosed_components;
   json["least_width"] = layer.validity.least_width;
   json["volume"] = layer.validity.volume;
   json["hausdorff"] = layer.distances.a_to_b;

@@ -8,10 +8,12 @@
 
 namespace colod {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Validity, vertices, faces, polygons, least_width, is_watertight,
-                                   is_manifold, boundary_edges, nonmanifold_edges,
-                                   misoriented_edges, nonmanifold_vertices, self_intersections,
-                                   degenerate_faces, components, volume, area)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Validity, vertices, faces, polygons, least_width,
+                                                is_watertight, is_manifold, boundary_edges,
+                                                nonmanifold_edges, misoriented_edges,
+                                                nonmanifold_vertices, self_intersections,
+                                                degenerate_faces, components, enclosed_components,
+                                                volume, area)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Distances, a_to_b, b_to_a, relative, mean_a_to_b, mean_b_to_a,
                                    rms_a_to_b, rms_b_to_a)
 

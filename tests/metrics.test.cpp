@@ -45,6 +45,27 @@ Mesh square(double size, double z, int n = 1) {
   return m;
 }
 
+/// 3 × 3 × 1, open to the sky in its middle.
+Mesh courtyard_house() {
+  Mesh m;
+  for (const double z : {0, 1})
+    for (const auto& [low, high] : {std::pair{0, 3}, {1, 2}})
+      for (const auto& [x, y] : {std::pair{low, low}, {high, low}, {high, high}, {low, high}})
+        m.vertices.emplace_back(x, y, z);
+  const auto quad = [&](int a, int b, int c, int d) {
+    m.faces.push_back({a, b, c});
+    m.faces.push_back({a, c, d});
+  };
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    quad(i, j, j + 8, i + 8);            // outer wall
+    quad(j + 4, i + 4, i + 12, j + 12);  // inner wall
+    quad(i + 8, j + 8, j + 12, i + 12);  // roof
+    quad(j, i, i + 4, j + 4);            // floor
+  }
+  return m;
+}
+
 Mesh moebius_strip(int n) {
   Mesh m;
   for (int i = 0; i < n; ++i) {
@@ -163,6 +184,37 @@ TEST_CASE("boxes that cross intersect, boxes apart do not") {
   CHECK(check_validity(join(unit_box(), unit_box({0.5, 0.4, 0.3}))).self_intersections > 0);
   CHECK(check_validity(join(unit_box(), unit_box({1.5, 0, 0}))).self_intersections == 0);
   CHECK(check_validity(join(unit_box(), unit_box({0.5, 0.4, 0.3})), false).self_intersections == 0);
+}
+
+TEST_CASE("cavities and what stands in them are enclosed, annexes and courtyards' houses are not") {
+  const auto box = [](double size, const Vec3& at) {
+    return box_mesh(at, at + Vec3::Constant(size));
+  };
+  const auto turned = [](Mesh m) {
+    for (Face& f : m.faces) std::swap(f[1], f[2]);
+    return m;
+  };
+  const Mesh shell = box(10, Vec3::Zero());
+  const Validity cavity = check_validity(join(shell, turned(box(4, {3, 3, 3}))));
+  CHECK(cavity.is_watertight);
+  CHECK(cavity.components == 2);
+  CHECK(cavity.enclosed_components == 1);
+  const Mesh furnished = join(join(shell, turned(box(4, {3, 3, 3}))), box(1, {4, 4, 4}));
+  CHECK(check_validity(furnished).enclosed_components == 2);
+  CHECK(check_validity(join(shell, box(4, {3, 3, 3}))).enclosed_components == 1);
+  const Mesh at_a_corner{{{0, 0, 0}, {3, 1, 1}, {1, 3, 1}, {1, 1, 3}},
+                         {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+  CHECK(check_validity(join(shell, at_a_corner)).enclosed_components == 1);
+  CHECK(check_validity(join(shell, box(1, {12, 0, 0}))).enclosed_components == 0);
+  CHECK(check_validity(join(box(1, {12, 0, 0}), shell)).enclosed_components == 0);
+
+  const Validity courtyard = check_validity(join(courtyard_house(), box(0.5, {1.25, 1.25, 0.25})));
+  CHECK(courtyard.is_watertight);
+  CHECK(courtyard.components == 2);
+  CHECK(courtyard.enclosed_components == 0);
+  Mesh open = join(shell, box(1, {4, 4, 4}));
+  open.faces.pop_back();
+  CHECK(check_validity(open).enclosed_components == 0);  // nothing is inside an open surface
 }
 
 TEST_CASE("overlaps of neighbours count: folded, equal, and through a shared vertex") {

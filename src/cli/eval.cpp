@@ -114,6 +114,7 @@ int eval(const EvalArguments& a) {
       {"nonmanifold_vertices", validity.nonmanifold_vertices},
       {"degenerate_faces", validity.degenerate_faces},
       {"components", validity.components},
+      {"enclosed_components", validity.enclosed_components},
       {"volume", validity.volume},
       {"hausdorff", {{"a_to_b", d.a_to_b}, {"b_to_a", d.b_to_a}, {"relative", d.relative}}},
       {"mean_distance", d.mean_a_to_b},

@@ -38,6 +38,7 @@ Json mesh_json(const Source& s) {
           {"area", v.area},
           {"volume", v.volume},
           {"components", v.components},
+          {"enclosed_components", v.enclosed_components},
           {"watertight", v.is_watertight},
           {"manifold", v.is_manifold},
           {"boundary_edges", v.boundary_edges},
