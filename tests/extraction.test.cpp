@@ -91,19 +91,11 @@ Mesh read_plain_obj(const std::filesystem::path& path) {
   return mesh;
 }
 
-/// A box whose corner at (4, 4, 4) is cut off, `size` metres along each edge.
-PolygonMesh chipped_box(double size) {
+/// A facet a ring; rings are convex, without holes.
+PolygonMesh polygon_mesh(std::vector<Vec3> vertices, const std::vector<std::vector<int>>& rings) {
   PolygonMesh m;
-  m.vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
-  m.vertices[7].x() -= size;
-  m.vertices.insert(m.vertices.end(), {{4, 4 - size, 4}, {4, 4, 4 - size}});
-  for (const std::vector<int>& ring : {std::vector<int>{0, 2, 3, 1},
-                                       {4, 5, 8, 7, 6},
-                                       {0, 1, 5, 4},
-                                       {2, 6, 7, 9, 3},
-                                       {0, 4, 6, 2},
-                                       {1, 3, 9, 8, 5},
-                                       {7, 8, 9}}) {
+  m.vertices = std::move(vertices);
+  for (const std::vector<int>& ring : rings) {
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
       m.triangles.push_back({ring[0], ring[i], ring[i + 1]});
       m.facet_of_triangle.push_back(static_cast<int>(m.facets.size()));
@@ -112,6 +104,37 @@ PolygonMesh chipped_box(double size) {
     m.facets.push_back({normal, -1, {ring}});
   }
   return m;
+}
+
+/// A box whose corner at (4, 4, 4) is cut off, `size` metres along each edge.
+PolygonMesh chipped_box(double size) {
+  std::vector<Vec3> vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
+  vertices[7].x() -= size;
+  vertices.insert(vertices.end(), {{4, 4 - size, 4}, {4, 4, 4 - size}});
+  return polygon_mesh(std::move(vertices), {{0, 2, 3, 1},
+                                            {4, 5, 8, 7, 6},
+                                            {0, 1, 5, 4},
+                                            {2, 6, 7, 9, 3},
+                                            {0, 4, 6, 2},
+                                            {1, 3, 9, 8, 5},
+                                            {7, 8, 9}});
+}
+
+/// A box of 4 m whose top has a ledge along its front, a triangle `depth` metres deep; behind it
+/// the top rises to `height` at the middle of the back.
+PolygonMesh box_with_ledge(double depth, double height) {
+  std::vector<Vec3> vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
+  vertices.insert(vertices.end(), {{2, depth, 4}, {2, 4, height}});
+  return polygon_mesh(std::move(vertices), {{0, 2, 3, 1},
+                                            {0, 1, 5, 4},
+                                            {0, 4, 6, 2},
+                                            {1, 3, 7, 5},
+                                            {2, 6, 9, 7, 3},
+                                            {4, 5, 8},
+                                            {4, 8, 9},
+                                            {4, 9, 6},
+                                            {5, 9, 8},
+                                            {5, 7, 9}});
 }
 
 /// Extruded L: 10 × 10 without its upper right 6 × 6, 4 high.
@@ -463,6 +486,19 @@ TEST_CASE("narrow facets are contracted where their short edges allow it") {
   CHECK(mesh.facets.size() == 6);
   CHECK(is_closed_manifold(mesh.triangles));
   for (const auto& facet : mesh.facets) CHECK(measure_facet(mesh, facet).width() > 1);
+}
+
+TEST_CASE("long edges of a narrow facet go where no plane moves by more than its width") {
+  PolygonMesh level = box_with_ledge(0.004, 4.001);
+  CHECK(contract_narrow_facets(level, 0.001) == 0);
+  CHECK(contract_narrow_facets(level, 0.005) == 1);
+  CHECK(level.vertices.size() == 9);
+  CHECK(is_closed_manifold(level.triangles));
+  for (const auto& facet : level.facets) CHECK(measure_facet(level, facet).width() > 0.5);
+
+  PolygonMesh gabled = box_with_ledge(0.004, 40);  // so steep that a roof would move by 8 mm
+  CHECK(contract_narrow_facets(gabled, 0.005) == 0);
+  CHECK(gabled.vertices.size() == 10);
 }
 
 TEST_CASE("what contracting has bent away from its facet is contracted like a narrow one") {

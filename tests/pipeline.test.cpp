@@ -52,6 +52,7 @@ void check_chain(const Building& b, int layers) {
   for (std::size_t k = 0; k < b.layers.size(); ++k) {
     INFO("layer " << k << " " << b.layers[k].failure);
     CHECK(b.layers[k].validity.is_watertight);
+    CHECK(b.layers[k].validity.enclosed_components == 0);
     CHECK(b.layers[k].validity.volume > 0);
     if (k == 0) continue;
     CHECK(b.layers[k].validity.faces >= b.layers[k - 1].validity.faces);
