@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <span>
 
 #include "../src/parallel.h"
 
@@ -83,22 +84,37 @@ class Planner {
                                        [&](int b) { return buildings_[b].layers.size() > 1; });
     for (const int b : group) {
       tile.parts.push_back(part_of(b, 0));
-      // A building without a finer layer is replaced by itself.
-      if (has_finer) tile.children.push_back(chain(b, buildings_[b].layers.size() > 1));
+      if (has_finer) tile.children.push_back(chain(b, finer_levels(b)));
     }
     tile.is_finest = !has_finer;
     return tile;
   }
 
-  /// The building's layers from `level` on, each the only child of the coarser one.
-  PlannedTile chain(int b, std::size_t level) const {
+  /// The levels below a group's, coarsest first: of layers that are alike the finest, none that is
+  /// like what the group shows but the building's last, whose grid is finer. Never empty: a
+  /// building without a finer layer is replaced by itself.
+  std::vector<std::size_t> finer_levels(int b) const {
+    const std::vector<ExportLayer>& layers = buildings_[b].layers;
+    const auto is_alike = [&](std::size_t i, std::size_t j) {
+      return layers[i].mesh.triangles == layers[j].mesh.triangles &&
+             layers[i].mesh.vertices == layers[j].mesh.vertices;
+    };
+    std::vector<std::size_t> levels;
+    for (std::size_t level = 1; level + 1 < layers.size(); ++level)
+      if (!is_alike(level, level + 1) && !is_alike(0, level)) levels.push_back(level);
+    levels.push_back(layers.size() - 1);
+    return levels;
+  }
+
+  /// The building's layers of these levels, each the only child of the coarser one.
+  PlannedTile chain(int b, std::span<const std::size_t> levels) const {
     const ExportBuilding& building = buildings_[b];
     PlannedTile tile{
-        .name = building.name + ".layer" + std::to_string(building.layers[level].layer),
-        .parts = {part_of(b, level)},
+        .name = building.name + ".layer" + std::to_string(building.layers[levels[0]].layer),
+        .parts = {part_of(b, levels[0])},
         .children = {}};
-    tile.is_finest = level + 1 == building.layers.size();
-    if (!tile.is_finest) tile.children.push_back(chain(b, level + 1));
+    tile.is_finest = levels.size() == 1;
+    if (!tile.is_finest) tile.children.push_back(chain(b, levels.subspan(1)));
     return tile;
   }
 

@@ -205,6 +205,33 @@ TEST_CASE("a building without detail has a box far away all the same") {
   CHECK(walk(files).size() == 4);
 }
 
+TEST_CASE("of layers that are alike one gets a tile") {
+  const auto layers_below_group = [](std::vector<int> shapes) {
+    const ExportBuilding house = three_layers("house", Vec3::Zero());
+    ExportBuilding b = house;
+    b.layers.clear();
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      b.layers.push_back(house.layers[shapes[k]]);
+      b.layers.back().layer = static_cast<int>(k);
+    }
+    const std::vector<ExportBuilding> buildings = {b};
+    std::vector<int> shown;
+    TilePlan plan = plan_tiles(buildings);
+    for (const PlannedTile* tile = &plan.root.children.at(0); !tile->children.empty();) {
+      tile = &tile->children.at(0);
+      shown.push_back(tile->parts.at(0).layer);
+      CHECK(tile->is_finest == tile->children.empty());
+    }
+    return shown;
+  };
+  CHECK(layers_below_group({0, 1, 2}) == std::vector{1, 2});
+  CHECK(layers_below_group({0, 1, 1}) == std::vector{2});
+  CHECK(layers_below_group({0, 0, 1}) == std::vector{2});
+  CHECK(layers_below_group({1, 1, 1}) == std::vector{2});  // its grid is finer
+  CHECK(layers_below_group({0, 0, 1, 1, 2}) == std::vector{3, 4});
+  CHECK(layers_below_group({0}).empty());
+}
+
 TEST_CASE("every tile shows the buildings below it, each once, and no other") {
   const std::vector<ExportBuilding> buildings = street(300);
   const TilePlan plan = plan_tiles(buildings);
