@@ -7,6 +7,8 @@
 //           collapse  as quadrics, of a SOURCE that has no ground to part with, such as a wrap
 //           polyfit   CGAL's Polygonal_surface_reconstruction (Nan & Wonka 2017) with GLPK, on the
 //                     20 largest of colod's own planes (meshes and points)
+//           moved     no method but a control: the source, each vertex moved by up to 0.0001 of the
+//                     diagonal: what the measures make of no difference (meshes only)
 //     Exit code 1: no answer, the reason on stderr.
 //   bench_peers measure SOURCE MODEL... : JSON with what `colod eval --lfd` says of each; null: no
 //   mesh
@@ -31,6 +33,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "../src/error.h"
 #include "../src/frame.h"
@@ -230,6 +233,22 @@ Mesh run_polyfit(const Source& source) {
   return out;
 }
 
+Mesh move_vertices(const Source& source) {
+  if (!source.is_mesh()) throw no_answer("needs a mesh");
+  constexpr double kMost = 1e-4;  // of the diagonal: where bench/quality's means begin to count
+  Mesh mesh = welded(source.mesh);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> along(-1, 1);
+  const double most = kMost * diagonal_of(source);
+  for (Vec3& v : mesh.vertices) {
+    Vec3 by;
+    do by = Vec3(along(random), along(random), along(random));
+    while (by.squaredNorm() > 1);
+    v += most * by;
+  }
+  return mesh;
+}
+
 void write_off(const std::string& path, const Mesh& mesh, const Vec3& origin) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (!file) throw Error(Stage::kOutput, path, "cannot be written");
@@ -265,6 +284,7 @@ void run(const std::string& peer, const std::string& path, const std::string& ou
   const Mesh result = peer == "meshopt"   ? run_meshopt(source, faces)
                       : peer == "wrap"    ? run_wrap(source)
                       : peer == "polyfit" ? run_polyfit(source)
+                      : peer == "moved"   ? move_vertices(source)
                                           : run_quadrics(source, faces);
   if (result.faces.empty()) throw no_answer("no face");
   write_off(out, compact(result), origin);
@@ -320,7 +340,7 @@ int main(int argc, char** argv) {
   CLI::App* run_app = app.add_subcommand("run", "one peer on one building");
   run_app->add_option("PEER", peer)
       ->required()
-      ->check(CLI::IsMember({"meshopt", "quadrics", "wrap", "collapse", "polyfit"}));
+      ->check(CLI::IsMember({"meshopt", "quadrics", "wrap", "collapse", "polyfit", "moved"}));
   run_app->add_option("SOURCE", source)->required();
   run_app->add_option("OUT", out)->required();
   run_app->add_option("--faces", faces, "wanted")->check(CLI::Range(4, 100000000));
