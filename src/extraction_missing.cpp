@@ -1,13 +1,15 @@
 // Based on: the trade of distance against complexity as in Verdie, Lafarge & Alliez, "LOD
 // generation for urban scenes", ACM TOG 34(3), 2015; samples on the R2 sequence (M. Roberts, 2018).
-// Differs: the paper's layers are the planes of their segments, come what may. Segments are told
-// apart by what rays meet, not by what a surface needs: the inner side of a passage's wall, the end
-// of a cross gable, the roof behind a gable wall that belongs to the body may wait for finer layers
-// than what they carry, and the min-cut took the wall away, or closed the gap with a fin. Here
-// (robust rules only) planes of finer layers join where that brings the surface nearer to all
+//
+// Differs: robust rules only; the paper's layers are the planes of their segments, come what may.
+// Segments are told apart by what rays meet, not by what a surface needs: the inner side of a
+// passage's wall, the end of a cross gable, the roof behind a gable wall that belongs to the body
+// may wait for finer layers than what they carry, and the min-cut took the wall away, or closed the
+// gap with a fin. Here planes of finer layers join where that brings the surface nearer to all
 // outlines by more than the facets that it adds are worth; so the coarsest layer is asked, finer
-// ones inherit. Notation: lengths are shares of the building's diagonal; spares are sets of planes
-// that may join.
+// ones inherit.
+//
+// Notation: lengths are shares of the building's diagonal; spares are sets of planes that may join.
 #include <algorithm>
 #include <cmath>
 #include <limits>
