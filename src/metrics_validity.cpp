@@ -178,8 +178,8 @@ int count_enclosed(const Welded& m, const std::vector<int>& component, int compo
       if (inner.min_coord(i) < outer.min_coord(i) || inner.max_coord(i) > outer.max_coord(i))
         return;
     if (is_enclosed[id]) return;
-    const Face& f =
-        m.faces[inner.handle()->front()];  // may touch at its corners, not in its middle
+    // The middle of a face: corners may touch the outer surface.
+    const Face& f = m.faces[inner.handle()->front()];
     const Vec3 x = (m.points[f[0]] + m.points[f[1]] + m.points[f[2]]) / 3;
     is_enclosed[id] = std::abs(winding_number(m, *outer.handle(), x)) > 0.5;
   };

@@ -21,11 +21,6 @@ class UnionFind {
     a = find(a), b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
-  int count_sets() const {
-    int sets = 0;
-    for (std::size_t i = 0; i < parent_.size(); ++i) sets += parent_[i] == static_cast<int>(i);
-    return sets;
-  }
 
  private:
   std::vector<int> parent_;
