@@ -129,5 +129,5 @@ TEST_CASE("at each switch silhouettes of scanned houses move by at most the want
     buildings.push_back(std::move(out));
   }
   REQUIRE(buildings.size() == 2);
-  CHECK(check_all(buildings) >= 4);
+  CHECK(check_all(buildings) >= 3);  // to the group, to the houses, to a finer layer
 }
