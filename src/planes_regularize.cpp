@@ -3,7 +3,9 @@
 // Differs: --rules robust only; the paper regularises nothing. A region is aligned only as far as
 // it is off its own plane or the building's noise excuses: exact models keep their walls, which had
 // moved by up to 4 mm. What noise tilts by some degrees and a much larger region passes through the
-// middle of joins that one: it bent a facade on all layers.
+// middle of joins that one: it bent a facade on all layers. What looks opposite ways on one plane
+// is one plane only where it is two sides of a sheet: a tower's wall above the gable that it stands
+// before is not, and a plane that looks the wrong way hid gables and balconies of whole houses.
 // Notation: n normal, d offset; family = wall directions that are parallel or orthogonal; azimuth =
 // angle of a horizontal direction from x; tilt = angle of a normal from z. "Canonical" = the one of
 // ±(n, d) whose first non-zero of (z, x, y) is positive.
@@ -21,7 +23,9 @@ namespace {
 
 constexpr double kMergeAngleCosine = 0.9781;  // 12°
 constexpr double kMergeRms = 0.6;             // of the growing distance
-constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet
+constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet …
+constexpr double kSheetShare = 0.5;           // … that lie over each other: of the smaller's area
+constexpr std::size_t kSheetSamples = 64;     // items at least that tell it, where there are so many
 constexpr double kCrossedRms = 0.75;          // of the growing distance: one that a larger crosses,
 constexpr double kCentred = 0.15;             // of its RMS: its mean distance from that,
 constexpr double kCrossedArea = 0.25;         // of the larger one's area
@@ -55,8 +59,40 @@ double crossing_cost(const Region& large, const Region& small, double distance) 
              : std::numeric_limits<double>::infinity();
 }
 
+bool covers(const std::array<Vec3, 3>& triangle, const Vec3& normal, const Vec3& x) {
+  int left = 0, right = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& from = triangle[k];
+    const double side = (triangle[(k + 1) % 3] - from).cross(x - from).dot(normal);
+    left += side >= 0, right += side <= 0;
+  }
+  return left == 3 || right == 3;
+}
+
+/// Two regions that look opposite ways are sides of one sheet when they lie over each other. What
+/// points of a cloud look away from is not known so well: there they always are.
+bool is_sheet(const Items& items, const Region& a, const Region& b) {
+  if (!items.is_mesh()) return true;
+  const Region &large = a.area >= b.area ? a : b, &small = a.area >= b.area ? b : a;
+  const auto is_covered = [&](const Vec3& x) {
+    return std::any_of(large.items.begin(), large.items.end(), [&](int i) {
+      std::array<Vec3, 3> corner;
+      items.corners(i, corner);
+      return covers(corner, large.normal, x);
+    });
+  };
+  double covered = 0, total = 0;
+  const std::size_t step = std::max<std::size_t>(1, small.items.size() / kSheetSamples);
+  for (std::size_t k = 0; k < small.items.size(); k += step) {
+    const int i = small.items[k];
+    total += items.area[i];
+    if (is_covered(items.center[i])) covered += items.area[i];
+  }
+  return covered >= kSheetShare * total;
+}
+
 /// What joining would cost (RMS over the limit, ≤ 1 is allowed); infinite when out of question.
-double merge_cost(const Region& a, const Region& b, double distance) {
+double merge_cost(const Items& items, const Region& a, const Region& b, double distance) {
   const double none = std::numeric_limits<double>::infinity();
   const double along = a.normal.dot(b.normal);
   if (std::abs(along) < kMergeAngleCosine) return none;
@@ -67,7 +103,7 @@ double merge_cost(const Region& a, const Region& b, double distance) {
   const Vec3 n = both.fit(a.area >= b.area ? a.normal : b.normal);
   const double d = n.dot(both.mean());
   const double cost = std::max(a.moments.rms(n, d), b.moments.rms(n, d)) / limit;
-  if (along < 0) return cost;
+  if (along < 0) return cost <= 1 && is_sheet(items, a, b) ? cost : none;
   return std::min(cost,
                   a.area >= b.area ? crossing_cost(a, b, distance) : crossing_cost(b, a, distance));
 }
@@ -329,13 +365,14 @@ void regularize(const Items& items, double distance, const AlignOptions& align,
     for (const int i : r.items) box.extend(items.center[i]);
   const double diagonal = box.diagonal();
   merge_neighbors(items, distance, true, regions,
-                  [&](const Region& a, const Region& b) { return merge_cost(a, b, distance); });
+                  [&](const Region& a, const Region& b) { return merge_cost(items, a, b, distance); });
   align_directions(regions, align);
   align_offsets(regions, std::max(kOffsetWidth * distance,
                                   std::min(kLeastOffset, kLeastOffsetShare * diagonal)));
-  merge_neighbors(items, distance, false, regions, [](const Region& a, const Region& b) {
+  merge_neighbors(items, distance, false, regions, [&](const Region& a, const Region& b) {
     const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
-    return a.normal == sign * b.normal && a.offset == sign * b.offset ? 0.0 : 2.0;
+    if (a.normal != sign * b.normal || a.offset != sign * b.offset) return 2.0;
+    return sign > 0 || is_sheet(items, a, b) ? 0.0 : 2.0;
   });
 }
 

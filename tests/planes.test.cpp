@@ -105,6 +105,16 @@ TEST_CASE("a sheet with both sides modelled is one plane") {
   CHECK(detect_planes(as_source(m)).planes.size() == 1);
 }
 
+TEST_CASE("walls that look opposite ways on one plane are two planes") {
+  const Mesh m = join(box_mesh({0, 0, 0}, {10, 6, 4}), box_mesh({10, 1, 4}, {16, 5, 8}));
+  std::vector<double> signs;
+  for (const Plane& plane : detect_planes(as_source(m)).planes)
+    if (std::abs(plane.normal.x()) == 1 && std::abs(plane.offset) == Approx(10))
+      signs.push_back(plane.normal.x());
+  std::sort(signs.begin(), signs.end());
+  CHECK(signs == std::vector<double>{-1, 1});
+}
+
 TEST_CASE("parallel planes within the distance share normal and offset bit for bit") {
   Mesh m;
   for (int k = 0; k < 4; ++k)
