@@ -5,8 +5,8 @@
 // twice the distance of region growing, whichever is more. One hop: a plane of no segment that
 // touches only such planes stays out. --rules robust: a canopy, a window's reveal, a step that no
 // voxel tells from the body lies in the body's segment, and would be detail on layer 0; so the
-// smallest planes of layer 0's segments, 3 % of their area, wait for the finest layer, and planes
-// of no segment that are as small with them.
+// smallest planes of layer 0's segments, 3 % of their area and none over 1 %, wait for the finest
+// layer, and planes of no segment that are as small with them.
 //
 // Notation: p plane of no segment, q plane of a segment of the layer.
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace colod {
 namespace {
 
 constexpr double kLeastTouch = 0.3;     // metres
-constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together
-constexpr std::size_t kFewPlanes = 12;  // of layer 0's segments: too few to be worth thinning out
+constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together …
+constexpr double kSmallPlane = 0.01;    // … and each of them
 constexpr double kSpareShare = 0.005;   // of all planes' area: smaller ones never join layer 0 …
 constexpr double kSparesShare = 0.01;   // … nor do planes that have less together
 
@@ -140,7 +140,7 @@ double small_area(const Planes& planes, const Segments& segments,
   std::sort(areas.begin(), areas.end());
   for (std::size_t i = 0; i < areas.size(); ++i) {
     sum += areas[i];
-    if (sum > kSmallPlanes * total) break;
+    if (sum > kSmallPlanes * total || areas[i] > kSmallPlane * total) break;
     if (i + 1 == areas.size() || areas[i + 1] > areas[i]) small = areas[i];
   }
   return small;

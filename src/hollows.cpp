@@ -220,6 +220,8 @@ std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& a
         if (auto bay = bay_between(panels, *sides[i], *sides[j]))
           if (!is_known(planes, hollows, *bay)) hollows.push_back(std::move(*bay));
   for (Hollow& h : dormers_on(panels)) hollows.push_back(std::move(h));
+  for (const Panel& p : panels)
+    if (auto recess = recess_before(panels, p)) hollows.push_back(std::move(*recess));
   for (Hollow& h : hollows) put_in_order(h);
   return hollows;
 }

@@ -1,6 +1,6 @@
 // Shared by rooms 4 and 9: what planes enclose only in part: trays (balconies), niches (loggias,
-// shop fronts) and shafts (chimneys whose top no scan shows); and bays and dormers, which rays
-// do not always part from what is behind them.
+// shop fronts) and shafts (chimneys whose top no scan shows); and bays, dormers and the recesses of
+// windows and doors, which rays do not always part from what is behind them.
 #pragma once
 
 #include <vector>
@@ -20,11 +20,12 @@ bool contains(const Region& region, const Vec3& x);
 
 struct Hollow {
   enum class Kind {
-    kTray,   ///< a floor with thin walls around it and nothing above
-    kNiche,  ///< between two walls that face each other, behind the facade
-    kShaft,  ///< between two walls that look away from each other; solid
-    kBay,    ///< before a facade; closed, with nothing missing
-    kDormer  ///< on a roof that it stands out of
+    kTray,    ///< a floor with thin walls around it and nothing above
+    kNiche,   ///< between two walls that face each other, behind the facade
+    kShaft,   ///< between two walls that look away from each other; solid
+    kBay,     ///< before a facade; closed, with nothing missing
+    kDormer,  ///< on a roof that it stands out of
+    kRecess   ///< a window's or a door's: a pane behind the facade, and its reveals
   };
   Kind kind;
   std::vector<int> planes = {};  ///< rising
@@ -33,7 +34,8 @@ struct Hollow {
   Region solid = {};             ///< inside it: a tray's floor, a shaft; a niche has none
   std::vector<Region> sheets = {};  ///< thin walls: rays say nothing of them
 
-  /// Nothing of it is missing that rays would need: bays, dormers on roofs that are not steep.
+  /// Nothing of it is missing that rays would need: bays, recesses, dormers on roofs that are not
+  /// steep.
   bool is_whole = false;
 
   /// A face that must be there although no plane shows it.
@@ -47,8 +49,8 @@ struct Hollow {
 };
 
 /// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays
-/// first, then niches, shafts, bays and dormers, by lowest planes. Cheap: pairs of small planes
-/// that are near.
+/// first, then niches, shafts, bays, dormers and recesses, by lowest planes. Cheap: pairs of small
+/// planes that are near.
 std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& among);
 
 }  // namespace colod

@@ -70,8 +70,8 @@ Hollow::Rim level_rim(double sign, double z, const Vec3& a, const Range& ra, con
 Hollow::Rim upright_rim(const Vec3& out, double offset, const Range& across, const Range& height,
                         int like = -1);
 
-/// Each over a floor or its underside, a pair of walls, a roof's small plane; nothing where they
-/// form none.
+/// Each over a floor or its underside, a pair of walls, a roof's small plane, before a pane;
+/// nothing where they form none.
 std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& floor);
 std::optional<Hollow> niche_between(const std::vector<Panel>& panels, const Panel& a,
                                     const Panel& b, double largest_area);
@@ -81,5 +81,6 @@ std::optional<Hollow> shaft_at_corner(const std::vector<Panel>& panels, const Pa
                                       const Panel& b);
 std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel& a, const Panel& b);
 std::vector<Hollow> dormers_on(const std::vector<Panel>& panels);
+std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall);
 
 }  // namespace colod::hollows

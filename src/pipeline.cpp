@@ -57,10 +57,11 @@ void add_layer_planes(const Building& b, int k, const Options& o, std::vector<in
     if (!is_taken[plane]) order.push_back(plane);
 }
 
-/// Metres: what is no detail on layer k.
+/// Metres: what is no detail on layer k. An exact model of few planes has none to give away.
 double tolerance(const Building& b, int k, const Options& o) {
   if (is_paper(o)) return 0;
-  const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;
+  const bool is_plain = b.planes.distance <= kLeastDistance && b.planes.planes.size() <= kFewPlanes;
+  const double share = k + 1 < o.layers && !is_plain ? kTolerance / std::pow(2, k) : 0;
   return std::max(share, kLeastTolerance) * b.planes.box.diagonal();
 }
 

@@ -25,12 +25,12 @@ constexpr double kMergeAngleCosine = 0.9781;  // 12°
 constexpr double kMergeRms = 0.6;             // of the growing distance
 constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet …
 constexpr double kSheetShare = 0.5;           // … that lie over each other: of the smaller's area
-constexpr std::size_t kSheetSamples = 64;     // items at least that tell it, where there are so many
-constexpr double kCrossedRms = 0.75;          // of the growing distance: one that a larger crosses,
-constexpr double kCentred = 0.15;             // of its RMS: its mean distance from that,
-constexpr double kCrossedArea = 0.25;         // of the larger one's area
-constexpr double kOffsetWidth = 0.6;          // of the growing distance
-constexpr double kLeastOffset = 0.05;  // metres: parallel planes closer than this are one …
+constexpr std::size_t kSheetSamples = 64;  // items at least that tell it, where there are so many
+constexpr double kCrossedRms = 0.75;       // of the growing distance: one that a larger crosses,
+constexpr double kCentred = 0.15;          // of its RMS: its mean distance from that,
+constexpr double kCrossedArea = 0.25;      // of the larger one's area
+constexpr double kOffsetWidth = 0.6;       // of the growing distance
+constexpr double kLeastOffset = 0.05;      // metres: parallel planes closer than this are one …
 constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
 constexpr double kDegree = M_PI / 180;
 constexpr double kUpright = 0.17;           // sine of what may be turned level or upright
@@ -364,8 +364,9 @@ void regularize(const Items& items, double distance, const AlignOptions& align,
   for (const Region& r : regions)
     for (const int i : r.items) box.extend(items.center[i]);
   const double diagonal = box.diagonal();
-  merge_neighbors(items, distance, true, regions,
-                  [&](const Region& a, const Region& b) { return merge_cost(items, a, b, distance); });
+  merge_neighbors(items, distance, true, regions, [&](const Region& a, const Region& b) {
+    return merge_cost(items, a, b, distance);
+  });
   align_directions(regions, align);
   align_offsets(regions, std::max(kOffsetWidth * distance,
                                   std::min(kLeastOffset, kLeastOffsetShare * diagonal)));

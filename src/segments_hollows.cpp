@@ -1,9 +1,9 @@
 // Based on: hollows.h.
 // Differs: robust rules only. Rays give a balcony's floor or one of its walls to the body, a
-//   loggia's ceiling and cheeks to the body or to several small segments. The planes of a tray or a
-//   niche become one segment: the one that has most of them and little else, or a new one. A
-//   chimney of which a scan shows a corner only may share a detail's segment with something larger;
-//   its planes then become a segment, too.
+//   loggia's ceiling and cheeks to the body or to several small segments. The planes of a tray, a
+//   niche or a recess become one segment: the one that has most of them and little else, or a new
+//   one. A chimney of which a scan shows a corner only may share a detail's segment with something
+//   larger; its planes then become a segment, too.
 // Notation: –
 #include <algorithm>
 
@@ -31,9 +31,14 @@ std::int64_t voxels_in(const HitGrid& grid, const Region& air) {
   return count;
 }
 
+bool is_alcove(Hollow::Kind kind) {
+  return kind == Hollow::Kind::kNiche || kind == Hollow::Kind::kRecess;
+}
+
 Form form_of(Hollow::Kind kind) {
   if (kind == Hollow::Kind::kTray) return Form::kTray;
   if (kind == Hollow::Kind::kNiche) return Form::kNiche;
+  if (kind == Hollow::Kind::kRecess) return Form::kPlain;
   return kind == Hollow::Kind::kBay ? Form::kBay : Form::kDormer;
 }
 
@@ -69,7 +74,7 @@ int home_of(const Planes& planes, const SegmentDraft& draft, const Hollow& hollo
 }
 
 bool may_own(const Planes& planes, const Hollow& hollow, double alcove_area) {
-  if (hollow.kind == Hollow::Kind::kNiche)
+  if (is_alcove(hollow.kind))
     return std::all_of(hollow.planes.begin(), hollow.planes.end(),
                        [&](int p) { return planes.planes[p].area < alcove_area; });
   return hollow.kind != Hollow::Kind::kShaft;
@@ -127,10 +132,9 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
           static_cast<double>(draft.segments.back().voxels) * grid.voxel_volume();
     }
     Segment& segment = draft.segments[home];
-    const bool is_niche = hollow.kind == Hollow::Kind::kNiche;
     if (segment.form == Form::kPlain) {
       segment.form = form_of(hollow.kind);
-      segment.is_alcove |= is_niche;
+      segment.is_alcove |= is_alcove(hollow.kind);
     }
     for (const int p : free) {
       is_taken[p] = 1;

@@ -260,6 +260,8 @@ TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
   CHECK(at_large(2).size() == 8);
   CHECK(layer_planes(planes, segments, layer, 0).size() == 6 + 9);  // the paper's
   CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8 + 9);
+  add(10, 0);  // small enough with the others, but not by itself
+  CHECK(at(0).back() == 17);
 }
 
 TEST_CASE("spares are the larger planes that layer 0 lacks, a set a plain segment") {

@@ -145,6 +145,22 @@ TEST_CASE("a chimney may lack one side; a bay or a dormer has a room behind its 
   for (const Hollow& h : hollows_of(bay)) CHECK(h.kind == Hollow::Kind::kBay);
 }
 
+TEST_CASE("a window's pane and reveals are a recess, with two reveals at least") {
+  const auto found = hollows_of(window_house());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == Hollow::Kind::kRecess);
+  CHECK(found[0].planes.size() == 5);
+  CHECK(found[0].bounds.empty());
+  CHECK(contains(found[0].air, {3.6, 0.1, 1.7}));
+  for (const Vec3& x : {Vec3(3.6, -0.1, 1.7), Vec3(3.6, 0.3, 1.7), Vec3(4.4, 0.1, 1.7)})
+    CHECK_FALSE(contains(found[0].air, x));
+  const Mesh open = without(window_house(), {3, 0, 1}, {4.2, 0.15, 1.2});  // the sill is not seen
+  REQUIRE(hollows_of(open).size() == 1);
+  CHECK(hollows_of(open)[0].planes.size() == 4);
+  const Mesh jamb = without(window_house(), {3, 0.01, 1}, {4.19, 0.15, 2.4});
+  CHECK(hollows_of(jamb).empty());
+}
+
 TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   const auto found = hollows_of(dormer_house());
   REQUIRE(found.size() == 1);
@@ -195,6 +211,26 @@ TEST_CASE("trays and niches are segments of their own, whole") {
     REQUIRE(own != s.segments.end());
     CHECK(own->planes == hollows_of(planes)[0].planes);
     CHECK(own->is_alcove == is_loggia);
+  }
+}
+
+TEST_CASE("a window's recess is one segment, although rays give its planes to several") {
+  for (const double turn : {0.0, 0.3}) {
+    Mesh house = window_house();
+    for (Vec3& v : house.vertices)
+      v = Vec3(std::cos(turn) * v.x() - std::sin(turn) * v.y(),
+               std::sin(turn) * v.x() + std::cos(turn) * v.y(), v.z());
+    const Planes planes = planes_of_mesh(house);
+    SegmentOptions options;
+    options.visibility.ns = 40;
+    const Segments s = build_segments(planes, options);
+    const auto own = std::find_if(s.segments.begin(), s.segments.end(),
+                                  [](const Segment& g) { return g.is_alcove; });
+    REQUIRE(own != s.segments.end());
+    CHECK(own->planes == hollows_of(planes)[0].planes);
+    CHECK(own->form == Form::kPlain);
+    CHECK(std::count_if(s.segments.begin(), s.segments.end(),
+                        [](const Segment& g) { return g.is_alcove; }) == 1);
   }
 }
 

@@ -52,6 +52,23 @@ inline Mesh loggia_house() {
   return m;
 }
 
+/// A window in that front, 1.2 × 1.4, its pane 0.2 behind the front.
+inline Mesh window_house() {
+  Mesh m = plain_house();
+  std::erase_if(m.faces, [&](const Face& f) { return face_cross(m, f).normalized().y() < -0.9; });
+  const double a = 3, b = 4.2, low = 1, high = 2.4, depth = 0.2;
+  add_quad(m, {0, 0, 0}, {a, 0, 0}, {a, 0, 7}, {0, 0, 7});
+  add_quad(m, {b, 0, 0}, {10, 0, 0}, {10, 0, 7}, {b, 0, 7});
+  add_quad(m, {a, 0, 0}, {b, 0, 0}, {b, 0, low}, {a, 0, low});
+  add_quad(m, {a, 0, high}, {b, 0, high}, {b, 0, 7}, {a, 0, 7});
+  add_quad(m, {a, 0, low}, {a, depth, low}, {a, depth, high}, {a, 0, high});
+  add_quad(m, {b, depth, low}, {b, 0, low}, {b, 0, high}, {b, depth, high});
+  add_quad(m, {a, 0, low}, {b, 0, low}, {b, depth, low}, {a, depth, low});
+  add_quad(m, {a, 0, high}, {a, depth, high}, {b, depth, high}, {b, 0, high});
+  add_quad(m, {a, depth, low}, {b, depth, low}, {b, depth, high}, {a, depth, high});
+  return m;
+}
+
 /// A chimney of 1 × 0.6 × 1.5 on the flat roof, without its top; with another part that is higher.
 inline Mesh chimney_house() {
   Mesh m = join(plain_house(), box_mesh({7, 5, 7}, {10, 8, 10}));

@@ -107,6 +107,24 @@ TEST_CASE("houses become chains of watertight layers whose detail does not decre
   CHECK(scene.selection.bound >= scene.selection.objective - 1e-9);
 }
 
+TEST_CASE("an exact model of few planes gives nothing away on coarse layers") {
+  const std::vector<Vec2> plan = {{0, 0}, {6, 0}, {6, 0.1}, {10, 0.1}, {10, 8}, {0, 8}};
+  Source step = house("step");
+  step.mesh = {};
+  const int n = static_cast<int>(plan.size());
+  for (const double z : {0.0, 6.0})
+    for (const Vec2& p : plan) step.mesh.vertices.emplace_back(p.x(), p.y(), z);
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    step.mesh.faces.push_back({i, j, j + n});
+    step.mesh.faces.push_back({i, j + n, i + n});
+    if (i > 0 && j > 0)  // both fans about the first corner
+      step.mesh.faces.push_back({0, j, i}), step.mesh.faces.push_back({n, i + n, j + n});
+  }
+  for (const Layer& layer : build({step}).buildings[0].layers)
+    CHECK(layer.validity.polygons == n + 2);
+}
+
 TEST_CASE("the paper's rules run through the same rooms") {
   Options options = small_options();
   options.rules = Rules::kPaper;

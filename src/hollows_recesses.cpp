@@ -1,0 +1,78 @@
+// Based on: hollows.cpp.
+// Differs: a window's or a door's recess is about as deep as a voxel is wide. Rays give its pane
+// and
+//   each of its reveals to the body or to segments of their own; a layer that has some of them only
+//   cuts a slot along the whole facade. A wall before the pane and at least two small planes at its
+//   edges that look at its middle tell it.
+// Notation: –
+#include <algorithm>
+#include <cmath>
+
+#include "hollows_parts.h"
+
+namespace colod::hollows {
+namespace {
+
+constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
+constexpr double kBeside = 0.12;     // metres: a reveal begins at the pane's edge
+constexpr double kAcross = 0.35;     // |cosine| of its normal to the pane's
+constexpr double kLeastPane = 0.3;   // m²
+constexpr std::size_t kReveals = 2;  // at least
+
+/// A wall with the ranges that it takes.
+struct Pane {
+  const Panel& panel;
+  Vec3 across = beside(panel.out);
+  Range width = panel.along(across), height = panel.height();
+  double back = panel.at(panel.out);
+};
+
+/// Small, across the pane, from its edge forward, and looking at its middle.
+bool is_reveal(const Panel& p, const Pane& pane) {
+  const Panel& wall = pane.panel;
+  if (p.id == wall.id || p.plane->area > wall.plane->area ||
+      std::abs(p.plane->normal.dot(wall.out)) > kAcross || !is_near(p.box, wall.box, kBeside) ||
+      p.plane->normal.dot(wall.box.center() - p.plane->centroid) <= 0)
+    return false;
+  const Range depth = p.along(wall.out), width = p.along(pane.across), height = p.height();
+  return std::abs(depth.low - pane.back) < kBeside && depth.high > pane.back + kLeastDepth &&
+         depth.high < pane.back + kMostDepth && width.low > pane.width.low - 2 * kBeside &&
+         width.high < pane.width.high + 2 * kBeside && height.low > pane.height.low - 2 * kBeside &&
+         height.high < pane.height.high + 2 * kBeside;
+}
+
+/// A larger wall that looks the same way, before the pane and beside it.
+bool is_facade(const Panel& p, const Pane& pane) {
+  const Panel& wall = pane.panel;
+  const double before = p.at(wall.out) - pane.back;
+  return p.is_wall && p.plane->area > wall.plane->area && p.out.dot(wall.out) > kAlike &&
+         before > 0.5 * kLeastDepth && before < kMostDepth &&
+         overlap(p.along(pane.across), pane.width) > -kReach &&
+         overlap(p.height(), pane.height) > -kReach;
+}
+
+}  // namespace
+
+std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall) {
+  if (!wall.is_wall || wall.plane->area < kLeastPane) return std::nullopt;
+  const Pane pane{wall};
+  Hollow recess{.kind = Hollow::Kind::kRecess, .planes = {wall.id}};
+  double mouth = pane.back;
+  for (const Panel& p : panels)
+    if (is_reveal(p, pane))
+      recess.planes.push_back(p.id), mouth = std::max(mouth, p.along(wall.out).high);
+  if (recess.planes.size() <= kReveals ||
+      std::none_of(panels.begin(), panels.end(),
+                   [&](const Panel& p) { return is_facade(p, pane); }))
+    return std::nullopt;
+  recess.air = {{-wall.out, -pane.back},
+                {wall.out, mouth},
+                {-pane.across, -pane.width.low},
+                {pane.across, pane.width.high},
+                {-Vec3::UnitZ(), -pane.height.low},
+                {Vec3::UnitZ(), pane.height.high}};
+  recess.is_whole = true;
+  return recess;
+}
+
+}  // namespace colod::hollows
