@@ -1,9 +1,9 @@
 // Based on: hollows.cpp.
 // Differs: a window's or a door's recess is about as deep as a voxel is wide. Rays give its pane
-// and
-//   each of its reveals to the body or to segments of their own; a layer that has some of them only
-//   cuts a slot along the whole facade. A wall before the pane and at least two small planes at its
-//   edges that look at its middle tell it.
+//   and each of its reveals to the body or to segments of their own; a layer that has some of them
+//   only cuts a slot along the whole facade. A wall before the pane and at least two small planes
+//   at its edges that look at its middle tell it. Arches fall to planes too small to be any: a face
+//   is added.
 // Notation: –
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
 constexpr double kBeside = 0.12;     // metres: a reveal begins at the pane's edge
 constexpr double kAcross = 0.35;     // |cosine| of its normal to the pane's
+constexpr double kFacing = 0.7;      // cosine between a reveal's normal and the way inward
 constexpr double kLeastPane = 0.3;   // m²
 constexpr std::size_t kReveals = 2;  // at least
 
@@ -51,26 +52,50 @@ bool is_facade(const Panel& p, const Pane& pane) {
          overlap(p.height(), pane.height) > -kReach;
 }
 
+/// Where no reveal looks down from the pane's upper edge, or inward from one of its sides, a face
+/// is added there, from the pane to the facade.
+std::vector<Hollow::Rim> rims_of(const Pane& pane, const std::vector<const Panel*>& reveals,
+                                 const Range& depth) {
+  const auto is_missing = [&](const Vec3& inward) {
+    return std::none_of(reveals.begin(), reveals.end(),
+                        [&](const Panel* p) { return p->plane->normal.dot(inward) > kFacing; });
+  };
+  std::vector<Hollow::Rim> rims;
+  if (is_missing(-Vec3::UnitZ()))
+    rims.push_back(level_rim(-1, pane.height.high, pane.across, pane.width, pane.panel.out, depth));
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 inward = -side * pane.across;
+    if (!is_missing(inward)) continue;
+    const double at = side > 0 ? -pane.width.high : pane.width.low;
+    const Range along = side > 0 ? depth : Range{-depth.high, -depth.low};
+    rims.push_back(upright_rim(inward, at, along, pane.height));
+  }
+  return rims;
+}
+
 }  // namespace
 
 std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall) {
   if (!wall.is_wall || wall.plane->area < kLeastPane) return std::nullopt;
   const Pane pane{wall};
   Hollow recess{.kind = Hollow::Kind::kRecess, .planes = {wall.id}};
-  double mouth = pane.back;
-  for (const Panel& p : panels)
-    if (is_reveal(p, pane))
-      recess.planes.push_back(p.id), mouth = std::max(mouth, p.along(wall.out).high);
-  if (recess.planes.size() <= kReveals ||
-      std::none_of(panels.begin(), panels.end(),
-                   [&](const Panel& p) { return is_facade(p, pane); }))
+  std::vector<const Panel*> reveals;
+  Range depth{pane.back, pane.back};
+  for (const Panel& p : panels) {
+    if (!is_reveal(p, pane)) continue;
+    reveals.push_back(&p), recess.planes.push_back(p.id);
+    depth.high = std::max(depth.high, p.along(wall.out).high);
+  }
+  if (reveals.size() < kReveals || std::none_of(panels.begin(), panels.end(),
+                                                [&](const Panel& p) { return is_facade(p, pane); }))
     return std::nullopt;
   recess.air = {{-wall.out, -pane.back},
-                {wall.out, mouth},
+                {wall.out, depth.high},
                 {-pane.across, -pane.width.low},
                 {pane.across, pane.width.high},
                 {-Vec3::UnitZ(), -pane.height.low},
                 {Vec3::UnitZ(), pane.height.high}};
+  recess.rims = rims_of(pane, reveals, depth);
   recess.is_whole = true;
   return recess;
 }

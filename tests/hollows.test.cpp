@@ -161,6 +161,19 @@ TEST_CASE("a window's pane and reveals are a recess, with two reveals at least")
   CHECK(hollows_of(jamb).empty());
 }
 
+TEST_CASE("a window whose lintel or jamb falls to small planes is as high and wide as its pane") {
+  const double opening = 1.2 * 1.4 * 0.2;
+  CHECK(signed_volume(mesh_of(window_house()).mesh()) == Approx(560 - opening).margin(0.01));
+  const Mesh arched = without(window_house(), {3, 0.01, 2.35}, {4.2, 0.15, 2.5});
+  const Mesh left = without(window_house(), {2.9, 0.01, 1}, {3.1, 0.15, 2.4});
+  const Mesh right = without(window_house(), {4.1, 0.01, 1}, {4.3, 0.15, 2.4});
+  for (const Mesh& house : {arched, left, right}) {
+    REQUIRE(hollows_of(house).size() == 1);
+    CHECK(hollows_of(house)[0].rims.size() == 1);
+    CHECK(signed_volume(mesh_of(house).mesh()) == Approx(560 - opening).margin(0.01));
+  }
+}
+
 TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   const auto found = hollows_of(dormer_house());
   REQUIRE(found.size() == 1);
