@@ -19,7 +19,7 @@ struct SegmentOptions {
 
 /// What planes enclose only in part is a kind of its own (hollows.h), and so is what makes the
 /// building much taller: a spire.
-enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire };
+enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire, kRecess };
 
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one

@@ -38,7 +38,7 @@ bool is_alcove(Hollow::Kind kind) {
 Form form_of(Hollow::Kind kind) {
   if (kind == Hollow::Kind::kTray) return Form::kTray;
   if (kind == Hollow::Kind::kNiche) return Form::kNiche;
-  if (kind == Hollow::Kind::kRecess) return Form::kPlain;
+  if (kind == Hollow::Kind::kRecess) return Form::kRecess;
   return kind == Hollow::Kind::kBay ? Form::kBay : Form::kDormer;
 }
 

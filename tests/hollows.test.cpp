@@ -241,7 +241,7 @@ TEST_CASE("a window's recess is one segment, although rays give its planes to se
                                   [](const Segment& g) { return g.is_alcove; });
     REQUIRE(own != s.segments.end());
     CHECK(own->planes == hollows_of(planes)[0].planes);
-    CHECK(own->form == Form::kPlain);
+    CHECK(own->form == Form::kRecess);
     CHECK(std::count_if(s.segments.begin(), s.segments.end(),
                         [](const Segment& g) { return g.is_alcove; }) == 1);
   }
