@@ -7,9 +7,9 @@
 // method gives layers to the segments: joint (the product), alone (each building analysed for
 // itself), extent and volume (size thresholds, placed so that as many segments lie on each layer as
 // the joint analysis puts there). Quadric collapse has no segments: its layers are asked
-// for as many faces as the joint ones. `mesh`: by the meshes, as `colod eval --truth` does it; `segment`: by the
-// layer of the segment that overlaps a part most, where one has an IoU of face area of at least
-// 0.3.
+// for as many faces as the joint ones. `mesh`: by the meshes, as `colod eval --truth` does it;
+// `segment`: by the layer of the segment that overlaps a part most, where one has an IoU of face
+// area of at least 0.3.
 // --segments writes every segment with its descriptor, layer and part as JSON.
 #include <meshoptimizer.h>
 

@@ -198,8 +198,8 @@ void place_flat(const std::vector<Descriptor>& segments, const std::vector<int>&
   }
 }
 
-// What is of a form is of a kind whatever its size: all trays, all niches, all bays, all dormers and
-// all recesses go to the layer on which most of them are, the coarsest of equals. The votes are
+// What is of a form is of a kind whatever its size: all trays, all niches, all bays, all dormers
+// and all recesses go to the layer on which most of them are, the coarsest of equals. The votes are
 // those of the scene, or of a prior that knows the kind.
 void settle_forms(const std::vector<Descriptor>& segments, const std::vector<Descriptor>& voters,
                   const std::vector<int>& layer_of_voter, int layers, std::vector<int>& layer) {

@@ -18,11 +18,11 @@
 namespace colod {
 namespace {
 
-constexpr double kLeastTouch = 0.3;     // metres
-constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together …
-constexpr double kSmallPlane = 0.01;    // … and each of them
-constexpr double kSpareShare = 0.005;   // of all planes' area: smaller ones never join layer 0 …
-constexpr double kSparesShare = 0.01;   // … nor do planes that have less together
+constexpr double kLeastTouch = 0.3;    // metres
+constexpr double kSmallPlanes = 0.03;  // of the area of layer 0's segments, together …
+constexpr double kSmallPlane = 0.01;   // … and each of them
+constexpr double kSpareShare = 0.005;  // of all planes' area: smaller ones never join layer 0 …
+constexpr double kSparesShare = 0.01;  // … nor do planes that have less together
 
 struct Piece {
   Vec3 a, b, c;

@@ -35,8 +35,8 @@ Evidence gather_evidence(const Partition& partition, Sight& sight, const VoteOpt
 void measure_coverage(const Partition& partition, const Planes& planes,
                       const std::vector<int>& input, Evidence& evidence);
 
-/// What rays cannot say: air in trays and niches is outside, a shaft is solid, thin walls are left to
-/// their outlines.
+/// What rays cannot say: air in trays and niches is outside, a shaft is solid, thin walls are left
+/// to their outlines.
 void ask_hollows(const Partition& partition, const std::vector<Hollow>& hollows,
                  Evidence& evidence);
 

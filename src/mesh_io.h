@@ -20,8 +20,8 @@ struct ReadOptions {
                                ///< several; otherwise one building a file
   bool is_y_up = false;        ///< --up y; glTF is always y up and turned by itself
   double unit = 1.0;           ///< metres per unit of the file (--unit m|cm|mm|ft)
-  int coarser = 0;             ///< glTF: that many levels of MSFT_lod down from the finest; an error
-                               ///< where there are fewer
+  int coarser = 0;  ///< glTF: that many levels of MSFT_lod down from the finest; an error
+                    ///< where there are fewer
 };
 
 /// A file that could not be read; the others go on.

@@ -66,7 +66,7 @@ struct Scene {
   Selection selection;
   Clustering clustering;
   double coanalysis_seconds = 0;
-  double export_seconds = 0;  ///< wall clock of what is written after the last mesh
+  double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
   bool has_prior = false;  ///< layers come from another scene that was analysed before
 };
@@ -127,8 +127,7 @@ std::vector<PlacedPart> place_parts(const Building& building, const Source& sour
 /// All of it; a file is read when its turn comes. A file that cannot be read any more leaves failed
 /// buildings.
 Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
-                  Depot& depot, const Progress& progress = {},
-                  const Prior* prior = nullptr);
+                  Depot& depot, const Progress& progress = {}, const Prior* prior = nullptr);
 
 /// All of it on sources in memory.
 Scene build_scene(ReadResult input, const Options& options, const Prior* prior = nullptr);

@@ -17,8 +17,9 @@ struct SegmentOptions {
   VisibilityOptions visibility;
 };
 
-/// What planes enclose only in part is a kind of its own (hollows.h), and so is what makes the
-/// building much taller: a spire.
+/// What planes enclose only in part or rays do not part from the body is a kind of its own
+/// (hollows.h), and so is what makes the building much taller: a spire. A scene file holds the
+/// number.
 enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire, kRecess };
 
 struct Segment {

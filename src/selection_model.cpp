@@ -112,8 +112,8 @@ void fill_similarities(const std::vector<SelectionBuilding>& buildings, double e
 }
 
 // With a prior f_co is linear: each item is worth its mean similarity to the prior's buildings.
-void add_prior_gains(const std::vector<SelectionBuilding>& buildings, const Prior& prior, double eta,
-                     Model& model) {
+void add_prior_gains(const std::vector<SelectionBuilding>& buildings, const Prior& prior,
+                     double eta, Model& model) {
   std::vector<std::vector<const Descriptor*>> beyond;  // layer 0, per building that has segments
   for (const Prior::PriorBuilding& b : prior.buildings) {
     if (b.segments.empty()) continue;
@@ -146,10 +146,9 @@ Model add_buildings(const std::vector<SelectionBuilding>& buildings,
   Model model;
   const auto has_segments = [](const auto& b) { return !b.segments.empty(); };
   const auto counted = std::count_if(buildings.begin(), buildings.end(), has_segments) - 1;
-  const auto in_prior =
-      options.prior ? std::count_if(options.prior->buildings.begin(),
-                                    options.prior->buildings.end(), has_segments)
-                    : counted;
+  const auto in_prior = options.prior ? std::count_if(options.prior->buildings.begin(),
+                                                      options.prior->buildings.end(), has_segments)
+                                      : counted;
   const auto others = static_cast<double>(std::max<std::ptrdiff_t>(1, in_prior));
   const double weight = options.is_paper ? options.lambda : options.lambda / others;
   for (std::size_t i = 0; i < buildings.size(); ++i)

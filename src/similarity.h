@@ -18,7 +18,7 @@ struct Descriptor {
   double area = 0;                  ///< m²
   double volume = 0;                ///< m³
   double extent = 0;                ///< metres: standard deviation along the longest axis
-  Form form = Form::kPlain;  ///< of the segment
+  Form form = Form::kPlain;         ///< of the segment
   bool is_flat =
       false;  ///< one plane, or less than 5 cm thick: whitening would make noise its shape
 };

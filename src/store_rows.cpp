@@ -22,7 +22,8 @@ namespace {
 using Json = nlohmann::json;
 
 Form form_of(std::int64_t stored) {
-  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kSpire, Form::kRecess})
+  for (const Form form :
+       {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kSpire, Form::kRecess})
     if (stored == static_cast<int>(form)) return form;
   return Form::kPlain;
 }

@@ -58,8 +58,8 @@ inline std::optional<Prior> read_prior(const std::string& path) {
   return Store(path, false).prior();
 }
 
-/// --rules, --visibility, --layering and every row of the option table; --rules comes first, since the others'
-/// defaults hang on it.
+/// --rules, --visibility, --layering and every row of the option table; --rules comes first, since
+/// the others' defaults hang on it.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--rules",
