@@ -45,9 +45,6 @@ Clustering cluster_segments(const std::vector<Descriptor>& segments,
 Clustering classify_segments(const std::vector<Descriptor>& segments, const Prior& prior,
                              const ClusteringOptions& options = {});
 
-/// What has no more planes is not worth thinning out.
-inline constexpr std::size_t kFewPlanes = 12;
-
 struct LayerPlanesOptions {
   bool is_paper = true;  ///< robust: small planes wait for the finest layer
   int layers = 3;        ///< l_n: the finest layer is l_n − 1

@@ -25,6 +25,7 @@
 namespace colod {
 namespace {
 
+constexpr double kClipShare = 1.0 / 3;   // of the growing distance: what a cut must reach into
 constexpr double kShortest = 3e-3;       // metres: shorter edges are contracted …
 constexpr double kShortestPaper = 1e-3;  // … under the paper's rules
 constexpr double kNarrowest = 2.5e-3;    // metres: edges of narrower facets likewise
@@ -38,6 +39,7 @@ constexpr double kMostLost = 0.03;      // of surface and volume when planes are
 constexpr double kSubstantial = 0.05;   // of the largest component: one that is kept besides it
 constexpr double kNoOther = 2;          // likewise: none is
 constexpr double kFacetPrice = 0.002;   // of tolerance × surface: volume that a facet must shape
+constexpr double kMostPrice = 0.02;     // m³, likewise: on the finest layer of an exact model
 constexpr double kMostMoved = 4;        // times the tolerance: how far saving a facet may go
 constexpr int kPruningRounds = 2;
 constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
@@ -97,10 +99,18 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& si
                                                                     : std::vector<char>();
 }
 
+/// Few centimetres of a plane are a detail where planes are known to the millimetre.
+Partition cut(const CuttingPlan& plan, const Planes& planes, const ExtractionOptions& options) {
+  PartitionOptions cutting{.max_cells = options.max_cells};
+  if (!options.is_paper)
+    cutting.clip_tolerance = std::min(cutting.clip_tolerance, kClipShare * planes.distance);
+  return partition_space(plan.planes, plan.box, cutting);
+}
+
 Attempt try_plan(const CuttingPlan& plan, const Planes& planes, Sight& sight,
                  const ExtractionOptions& options) {
   Attempt attempt;
-  attempt.partition = partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
+  attempt.partition = cut(plan, planes, options);
   attempt.warnings = attempt.partition.warnings;
   attempt.is_forced_out = forced_outside(attempt.partition, plan);
   attempt.is_inside = label(plan, planes, sight, options, attempt);
@@ -183,14 +193,16 @@ void prune(CuttingPlan& plan, const Planes& planes, Sight& sight, const Extracti
 }
 
 /// Facets that are not worth their price at the layer's tolerance go.
-void simplify(const ExtractionOptions& options, Attempt& attempt) {
+void simplify(const ExtractionOptions& options, bool is_exact, Attempt& attempt) {
   const double area = surface_area(attempt.mesh.mesh());
   const double volume = signed_volume(attempt.mesh.mesh());
+  const double price = kFacetPrice * options.tolerance * area;
   std::vector<char> is_inside = attempt.is_inside;
-  simplify_cells(attempt.partition, attempt.evidence, attempt.is_forced_out,
-                 {.facet_volume = kFacetPrice * options.tolerance * area,
-                  .depth = kMostMoved * options.tolerance},
-                 is_inside);
+  simplify_cells(
+      attempt.partition, attempt.evidence, attempt.is_forced_out,
+      {.facet_volume = is_exact && options.is_finest ? std::min(price, kMostPrice) : price,
+       .depth = kMostMoved * options.tolerance},
+      is_inside);
   double mended = 0;
   PolygonMesh mesh = extract_surface(attempt.partition, is_inside, false, &mended);
   if (mesh.facets.empty() || mesh.facets.size() >= attempt.mesh.facets.size() ||
@@ -209,7 +221,7 @@ void keep_sheets(CuttingPlan plan, const Planes& planes, const std::vector<int>&
   if (sheets.empty()) return;
   const std::size_t first = plan.planes.size();
   add_slabs(planes, sheets, plan);
-  Partition partition = partition_space(plan.planes, plan.box, {.max_cells = options.max_cells});
+  Partition partition = cut(plan, planes, options);
   if (partition.warnings.size() > attempt.partition.warnings.size()) return;
   std::vector<char> is_inside = fill_slabs(scene, partition, sheets, first, attempt.is_inside);
   double mended = 0;
@@ -233,8 +245,9 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   if (attempt.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
-  if (options.tolerance > 0) simplify(options, attempt);
-  if (options.keeps_sheets && !options.is_paper && planes.distance <= kLeastDistance)
+  const bool is_exact = !options.is_paper && planes.distance <= kLeastDistance;
+  if (options.tolerance > 0) simplify(options, is_exact, attempt);
+  if (options.is_finest && is_exact)
     keep_sheets(std::move(plan), planes, layer_planes, sight, options, attempt);
   Extraction result;
   result.mesh = std::move(attempt.mesh);

@@ -20,7 +20,8 @@ struct ExtractionOptions {
   double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut
   double tolerance = 0;     ///< metres, robust: planes whose outline lies this near to a larger one
                             ///< that looks about the same way take its place
-  bool keeps_sheets = false;  ///< robust: what is drawn without thickness becomes a thin body
+  bool is_finest = false;   ///< robust: what is drawn without thickness becomes a thin body, and a
+                            ///< facet's price does not grow with the building
   int max_cells = 200000;
 };
 

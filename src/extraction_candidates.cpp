@@ -65,10 +65,21 @@ bool is_pitched(const Planes& planes, const std::vector<int>& layer_planes, doub
   });
 }
 
+/// Nothing of the layer lies beyond the plane by more than `most` metres.
+bool is_last(const Planes& planes, const std::vector<int>& layer_planes, const Plane& plane,
+             double most) {
+  return std::all_of(layer_planes.begin(), layer_planes.end(), [&](int p) {
+    const std::vector<Vec3>& outline = planes.planes[p].outline.vertices;
+    return std::all_of(outline.begin(), outline.end(),
+                       [&](const Vec3& v) { return plane.signed_distance(v) <= most; });
+  });
+}
+
 /// Full-extent planes where the building ends on each side. Where a large plane lies there already,
 /// its own place and slope are used, so that no sliver is left between the two.
 void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const Box& all,
-               Box layer, double snap, CuttingPlan& plan) {
+               Box layer, double tolerance, CuttingPlan& plan) {
+  const double snap = std::max(kSnap, tolerance), beyond = std::max(planes.distance, tolerance);
   for (int axis = 0; axis < 2; ++axis) {
     if (layer.size()[axis] >= kThinnest) continue;
     Vec3 outward = Vec3::Zero();
@@ -89,7 +100,8 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
       const Plane& plane = planes.planes[p];
       const double least = plane.area < kWholeSide * across ? kSnap : snap;
       if (plane.normal.dot(direction) < kSnapCosine ||
-          std::abs(direction.dot(plane.centroid) - extent) > least)
+          std::abs(direction.dot(plane.centroid) - extent) > least ||
+          !is_last(planes, layer_planes, plane, beyond))
         continue;
       if (nearest < 0 || plane.area > planes.planes[nearest].area) nearest = p;
     }
@@ -137,8 +149,8 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   if (!options.is_paper) {
     const Vec3 margin = Vec3::Constant(std::max(kThinnest, kBoxGrowth * all.diagonal()));
     plan.box.min -= margin, plan.box.max += margin;
-    add_sides(planes, layer_planes, all, outline_box(planes, layer_planes),
-              std::max(kSnap, options.tolerance), plan);
+    add_sides(planes, layer_planes, all, outline_box(planes, layer_planes), options.tolerance,
+              plan);
   }
   std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
   if (!options.is_paper) {

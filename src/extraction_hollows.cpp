@@ -32,11 +32,17 @@ void add_rims(const Hollow& hollow, CuttingPlan& plan) {
 
 void ask_hollows(const Partition& partition, const std::vector<Hollow>& hollows,
                  Evidence& evidence) {
+  const auto is_in_recess = [&](const Vec3& x) {
+    return std::any_of(hollows.begin(), hollows.end(), [&](const Hollow& hollow) {
+      return hollow.kind == Hollow::Kind::kRecess && contains(hollow.air, x);
+    });
+  };
   evidence.is_told.assign(partition.cells.size(), 0);
-  for (std::size_t c = 0; c < partition.cells.size(); ++c)
+  for (std::size_t c = 0; c < partition.cells.size(); ++c) {
+    const Vec3& x = partition.cells[c].centroid;
+    if (is_in_recess(x)) continue;  // a dormer's window is no part of the dormer's body
     for (const Hollow& hollow : hollows) {
       if (hollow.is_whole) continue;  // rays see it all
-      const Vec3& x = partition.cells[c].centroid;
       const bool is_sheet = std::any_of(hollow.sheets.begin(), hollow.sheets.end(),
                                         [&](const Region& sheet) { return contains(sheet, x); });
       const bool is_solid = is_sheet || (!hollow.solid.empty() && contains(hollow.solid, x));
@@ -45,6 +51,7 @@ void ask_hollows(const Partition& partition, const std::vector<Hollow>& hollows,
       evidence.cells[c] = {is_solid ? 1.0 : -1.0, 0, 0};
       evidence.is_told[c] = 1;
     }
+  }
 }
 
 }  // namespace colod

@@ -14,11 +14,11 @@ namespace colod::hollows {
 namespace {
 
 constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
-constexpr double kBeside = 0.12;     // metres: a reveal begins at the pane's edge
-constexpr double kAcross = 0.35;     // |cosine| of its normal to the pane's
-constexpr double kFacing = 0.7;      // cosine between a reveal's normal and the way inward
-constexpr double kLeastPane = 0.3;   // m²
-constexpr std::size_t kReveals = 2;  // at least
+constexpr double kBeside = 0.12;  // metres: a reveal begins at the pane's edge
+constexpr double kAcross = 0.35;  // |cosine| of its normal to the pane's
+constexpr double kFacing = 0.7;   // cosine between a reveal's normal and the way inward
+constexpr double kLeastPane = 0.3, kMostPane = 16;  // m²: more is the back of a loggia
+constexpr std::size_t kReveals = 2;                 // at least
 
 /// A wall with the ranges that it takes.
 struct Pane {
@@ -42,14 +42,21 @@ bool is_reveal(const Panel& p, const Pane& pane) {
          height.high < pane.height.high + 2 * kBeside;
 }
 
-/// A larger wall that looks the same way, before the pane and beside it.
+bool is_within(const Range& inner, const Range& outer) {
+  return inner.low > outer.low && inner.high < outer.high;
+}
+
+/// A wall that looks the same way, before the pane, and around it or larger and beside it.
 bool is_facade(const Panel& p, const Pane& pane) {
   const Panel& wall = pane.panel;
   const double before = p.at(wall.out) - pane.back;
-  return p.is_wall && p.plane->area > wall.plane->area && p.out.dot(wall.out) > kAlike &&
-         before > 0.5 * kLeastDepth && before < kMostDepth &&
-         overlap(p.along(pane.across), pane.width) > -kReach &&
-         overlap(p.height(), pane.height) > -kReach;
+  if (!p.is_wall || p.out.dot(wall.out) < kAlike || before < 0.5 * kLeastDepth ||
+      before > kMostDepth)
+    return false;
+  const Range width = p.along(pane.across), height = p.height();
+  return p.plane->area > wall.plane->area
+             ? overlap(width, pane.width) > -kReach && overlap(height, pane.height) > -kReach
+             : is_within(pane.width, width) && is_within(pane.height, height);
 }
 
 /// Where no reveal looks down from the pane's upper edge, or inward from one of its sides, a face
@@ -76,7 +83,8 @@ std::vector<Hollow::Rim> rims_of(const Pane& pane, const std::vector<const Panel
 }  // namespace
 
 std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall) {
-  if (!wall.is_wall || wall.plane->area < kLeastPane) return std::nullopt;
+  if (!wall.is_wall || wall.plane->area < kLeastPane || wall.plane->area > kMostPane)
+    return std::nullopt;
   const Pane pane{wall};
   Hollow recess{.kind = Hollow::Kind::kRecess, .planes = {wall.id}};
   std::vector<const Panel*> reveals;

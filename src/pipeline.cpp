@@ -61,8 +61,10 @@ void add_layer_planes(const Building& b, int k, const Options& o, std::vector<in
 double tolerance(const Building& b, int k, const Options& o) {
   if (is_paper(o)) return 0;
   const bool is_plain = b.planes.distance <= kLeastDistance && b.planes.planes.size() <= kFewPlanes;
-  const double share = k + 1 < o.layers && !is_plain ? kTolerance / std::pow(2, k) : 0;
-  return std::max(share, kLeastTolerance) * b.planes.box.diagonal();
+  const double least = kLeastTolerance * b.planes.box.diagonal();
+  if (is_plain) return std::min(least, b.planes.distance);
+  const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;
+  return std::max(share * b.planes.box.diagonal(), least);
 }
 
 /// `planes`: in the order of cutting, those of coarser layers, and then of this one too.
@@ -77,7 +79,7 @@ void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, 
                                       {.is_paper = is_paper(o),
                                        .nr = o.nr,
                                        .tolerance = tolerance(b, layer.layer, o),
-                                       .keeps_sheets = layer.layer + 1 == o.layers},
+                                       .is_finest = layer.layer + 1 == o.layers},
                                       joined);
     planes.insert(planes.end(), joined.begin(), joined.end());
     layer.mesh = std::move(result.mesh);

@@ -23,9 +23,14 @@ using namespace regions;
 constexpr double kNoiseFactor = 7;
 constexpr double kMoveShare = 1.0 / 3;  // of the growing distance: what aligning may cost
 constexpr double kLeastMove = 0.0005;   // metres: likewise without noise; files have mm
-constexpr double kMostDistance = 0.2;   // metres
-constexpr double kLeastShare = 1e-4;    // of the building's area: the least region
-constexpr double kMostShare = 0.01;     // a region this large is never too small
+constexpr double kOffsetWidth = 0.6;    // of the growing distance: parallel planes are one …
+constexpr double kLeastOffset = 0.05;   // metres: … and closer than this …
+constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
+constexpr double kPlainDistance = 0.003;      // metres: planes of exact models that have few
+constexpr double kMostDistance = 0.2;         // metres
+constexpr double kLeastShare = 1e-4;          // of the building's area: the least region …
+constexpr double kLeastShareExact = 3e-5;  // … of an exact model: large houses have windows, too
+constexpr double kMostShare = 0.01;        // a region this large is never too small
 constexpr std::size_t kMostPlanes = 4000;
 constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
 
@@ -70,17 +75,34 @@ double growing_distance(double noise, const Box& box, const PlaneOptions& option
   return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
 }
 
-/// What noise excuses is aligned; an exact model keeps its planes.
-AlignOptions align_options(double noise, double distance) {
+/// What noise excuses is aligned; an exact model keeps its planes, one of few planes each of them.
+AlignOptions align_options(double noise, double distance, const Box& box) {
   const double most = kMoveShare * distance;
   const double excused = std::max(kLeastMove, kMoveShare * kNoiseFactor * noise);
-  return {.least_move = std::min(excused, most), .most_move = most};
+  const double together = std::min(kLeastOffset, kLeastOffsetShare * box.diagonal());
+  const double width = kOffsetWidth * distance;
+  return {.least_move = std::min(excused, most),
+          .most_move = most,
+          .offset_width = distance > kPlainDistance ? std::max(width, together) : width};
+}
+
+/// Flat to the millimetre, as what people draw.
+bool is_exact(double noise) { return kNoiseFactor * noise <= kPlainDistance; }
+
+/// The regions of an exact model of few planes, grown so tightly that walls which bend by a
+/// centimetre stay two; none: it is not one.
+std::vector<Region> plain_regions(const Items& items, double noise, double angle_deg) {
+  if (!is_exact(noise)) return {};
+  std::vector<Region> regions = grow_regions(items, items.normal, {kPlainDistance, angle_deg});
+  if (regions.size() > kFewPlanes) regions.clear();
+  return regions;
 }
 
 /// m²: regions below are no planes. Rougher surfaces need larger ones.
-double least_area(double distance, double total) {
+double least_area(double noise, double distance, double total) {
   const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
-  return std::min(std::max(absolute, kLeastShare * total), kMostShare * total);
+  const double share = is_exact(noise) ? kLeastShareExact : kLeastShare;
+  return std::min(std::max(absolute, share * total), kMostShare * total);
 }
 
 /// Drops small regions, but never the largest one.
@@ -105,13 +127,19 @@ void limit_count(std::vector<Region>& regions, std::vector<std::string>& warning
 std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
   drop_floaters(items, result.warnings);
   const double noise = estimate_noise(items);
-  result.distance = growing_distance(noise, used_box(items), options);
-  const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
-  std::vector<Region> regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
-  const double least = least_area(result.distance, used_area(items));
+  const Box box = used_box(items);
+  result.distance = growing_distance(noise, box, options);
+  std::vector<Region> regions = plain_regions(items, noise, options.angle_deg);
+  if (!regions.empty()) {
+    result.distance = std::min(kPlainDistance, result.distance);
+  } else {
+    const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
+    regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
+  }
+  const double least = least_area(noise, result.distance, used_area(items));
   drop_small(items, least / 4, options.min_points / 2, regions);
   limit_count(regions, result.warnings);
-  regularize(items, result.distance, align_options(noise, result.distance), regions);
+  regularize(items, result.distance, align_options(noise, result.distance, box), regions);
   drop_small(items, least, options.min_points, regions);
   absorb_rest(items, result.distance, regions);
   return regions;

@@ -11,6 +11,8 @@ namespace colod {
 /// Metres: planes grow at least this far under robust rules, on small buildings 2 % of the
 /// diagonal.
 constexpr double kLeastDistance = 0.03;
+/// A model has none to spare of so few planes: nothing is merged or left out where it is exact.
+constexpr std::size_t kFewPlanes = 12;
 
 struct PlaneOptions {
   bool is_paper = false;  ///< to the letter: CGAL region growing at

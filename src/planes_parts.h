@@ -89,11 +89,12 @@ std::vector<std::pair<int, int>> neighboring_regions(const Items& items,
 std::vector<Region> grow_with_cgal(const Items& items, const PlaneOptions& options);
 
 // planes_regularize.cpp
-/// Metres (root mean square over a region's own surface) that aligning may move it: as much as it
-/// is off its own plane, but within these.
+/// Metres that aligning may move a region (root mean square over its own surface): as much as it is
+/// off its own plane, but within these; and how far parallel planes that become one may be apart.
 struct AlignOptions {
   double least_move;
   double most_move;
+  double offset_width;
 };
 /// Joins nearly coplanar neighbours, then aligns directions and offsets where a region's own points
 /// allow.

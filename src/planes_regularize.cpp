@@ -29,9 +29,6 @@ constexpr std::size_t kSheetSamples = 64;  // items at least that tell it, where
 constexpr double kCrossedRms = 0.75;       // of the growing distance: one that a larger crosses,
 constexpr double kCentred = 0.15;          // of its RMS: its mean distance from that,
 constexpr double kCrossedArea = 0.25;      // of the larger one's area
-constexpr double kOffsetWidth = 0.6;       // of the growing distance
-constexpr double kLeastOffset = 0.05;      // metres: parallel planes closer than this are one …
-constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
 constexpr double kDegree = M_PI / 180;
 constexpr double kUpright = 0.17;           // sine of what may be turned level or upright
 constexpr double kMostTurn = 10 * kDegree;  // of a narrow strip, which hardly knows its direction
@@ -360,16 +357,11 @@ void align_offsets(std::vector<Region>& regions, double width) {
 
 void regularize(const Items& items, double distance, const AlignOptions& align,
                 std::vector<Region>& regions) {
-  Box box;
-  for (const Region& r : regions)
-    for (const int i : r.items) box.extend(items.center[i]);
-  const double diagonal = box.diagonal();
   merge_neighbors(items, distance, true, regions, [&](const Region& a, const Region& b) {
     return merge_cost(items, a, b, distance);
   });
   align_directions(regions, align);
-  align_offsets(regions, std::max(kOffsetWidth * distance,
-                                  std::min(kLeastOffset, kLeastOffsetShare * diagonal)));
+  align_offsets(regions, align.offset_width);
   merge_neighbors(items, distance, false, regions, [&](const Region& a, const Region& b) {
     const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
     if (a.normal != sign * b.normal || a.offset != sign * b.offset) return 2.0;

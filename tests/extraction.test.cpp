@@ -590,10 +590,10 @@ TEST_CASE("a sheet that stands out of the building becomes a thin body") {
   const Mesh canopy = sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0});
   const Mesh fin = sheet_mesh({0, 0, 5}, {8, 0, 0}, {0, 0, 1});  // the front wall goes on
   expect_solid(extract(join(house, canopy)).mesh, 240);
-  const PolygonMesh with = extract(join(house, canopy), {.keeps_sheets = true}).mesh;
+  const PolygonMesh with = extract(join(house, canopy), {.is_finest = true}).mesh;
   expect_solid(with, 240 + 2 * 1.5 * 0.08);
   CHECK(with.facets.size() == 11);
-  const PolygonMesh both = extract(join(join(house, canopy), fin), {.keeps_sheets = true}).mesh;
+  const PolygonMesh both = extract(join(join(house, canopy), fin), {.is_finest = true}).mesh;
   expect_solid(both, 240 + 2 * 1.5 * 0.08 + 8 * 1 * 0.08);
   CHECK(both.facets.size() == 13);
 }
@@ -603,7 +603,7 @@ TEST_CASE("sheets that meet are joined at their corners") {
   Mesh screen = sheet_mesh({2, -1.2, 2}, {3, 0, 0}, {0, 0, 2});  // front and both sides
   screen = join(screen, sheet_mesh({2, 0, 2}, {0, -1.2, 0}, {0, 0, 2}));
   screen = join(screen, sheet_mesh({5, -1.2, 2}, {0, 1.2, 0}, {0, 0, 2}));
-  const PolygonMesh mesh = extract(join(house, screen), {.keeps_sheets = true}).mesh;
+  const PolygonMesh mesh = extract(join(house, screen), {.is_finest = true}).mesh;
   expect_solid(mesh, 288 + 2 * (3 * 1.2 - (3 - 0.16) * (1.2 - 0.08)));
   CHECK(mesh.facets.size() == 14);  // three outer, three inner, top and bottom
 }
@@ -612,7 +612,7 @@ TEST_CASE("steps, sheets that touch nothing and noise are no thin bodies") {
   const Mesh house = box_mesh({0, 0, 0}, {8, 6, 5});
   const Mesh step = join(house, sheet_mesh({3, -1.5, 0.3}, {2, 0, 0}, {0, 1.5, 0}));
   const double with_step = signed_volume(extract(step).mesh.mesh());
-  const ExtractionOptions options{.keeps_sheets = true};
+  const ExtractionOptions options{.is_finest = true};
   expect_solid(extract(step, options).mesh, with_step);
   expect_solid(extract(join(house, sheet_mesh({3, -2.5, 3}, {2, 0, 0}, {0, 1.5, 0})), options).mesh,
                240);

@@ -184,6 +184,21 @@ TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   CHECK_FALSE(contains(found[0].solid, {5, 2, 5.5}));
 }
 
+TEST_CASE("a dormer's window is a recess in it, even one larger than the rest of the front") {
+  const auto found = hollows_of(dormer_window_house());
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].kind == Hollow::Kind::kDormer);
+  CHECK(found[1].kind == Hollow::Kind::kRecess);
+  CHECK(signed_volume(mesh_of(dormer_window_house()).mesh()) ==
+        Approx(signed_volume(mesh_of(dormer_house()).mesh()) - 1.7 * 1.1 * 0.15).margin(0.01));
+}
+
+TEST_CASE("what is larger than any window is no recess") {
+  Mesh house = window_house();  // three and a half times as wide and high: 4.2 × 4.9
+  for (Vec3& v : house.vertices) v = {3.5 * v.x(), v.y(), 3.5 * v.z()};
+  CHECK(hollows_of(house).empty());
+}
+
 TEST_CASE("a bay is told by its sides, its front and the facade, square or splayed") {
   for (const double splay : {0.0, 0.5}) {
     const auto found = hollows_of(bay_house(splay));

@@ -90,6 +90,26 @@ inline Mesh dormer_house() {
   return m;
 }
 
+/// That dormer with a window of 1.7 × 1.1 in its front, larger than what is left around it.
+inline Mesh dormer_window_house() {
+  Mesh m = dormer_house();
+  const double front = 0.3, pane = 0.45, foot = 4 + std::sqrt(3.0) * front;
+  const double top = 4 + std::sqrt(3.0) * 1.1, a = 4.15, b = 5.85, low = 4.65, high = 5.75;
+  std::erase_if(m.faces, [&](const Face& f) {
+    return (m.vertices[f[0]] + m.vertices[f[1]] + m.vertices[f[2]]).y() == 3 * front;
+  });
+  add_quad(m, {4, front, foot}, {a, front, foot}, {a, front, top}, {4, front, top});
+  add_quad(m, {b, front, foot}, {6, front, foot}, {6, front, top}, {b, front, top});
+  add_quad(m, {a, front, foot}, {b, front, foot}, {b, front, low}, {a, front, low});
+  add_quad(m, {a, front, high}, {b, front, high}, {b, front, top}, {a, front, top});
+  add_quad(m, {a, front, low}, {a, pane, low}, {a, pane, high}, {a, front, high});
+  add_quad(m, {b, pane, low}, {b, front, low}, {b, front, high}, {b, pane, high});
+  add_quad(m, {a, front, low}, {b, front, low}, {b, pane, low}, {a, pane, low});
+  add_quad(m, {a, front, high}, {a, pane, high}, {b, pane, high}, {b, front, high});
+  add_quad(m, {a, pane, low}, {b, pane, low}, {b, pane, high}, {a, pane, high});
+  return m;
+}
+
 /// A bay 2.5 wide and 0.9 deep before the front, from z = 1 to 4.5; `splay` narrows its front.
 inline Mesh bay_house(double splay = 0) {
   Mesh m = plain_house();

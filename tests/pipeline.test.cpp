@@ -108,7 +108,8 @@ TEST_CASE("houses become chains of watertight layers whose detail does not decre
 }
 
 TEST_CASE("an exact model of few planes gives nothing away on coarse layers") {
-  const std::vector<Vec2> plan = {{0, 0}, {6, 0}, {6, 0.1}, {10, 0.1}, {10, 8}, {0, 8}};
+  // A step of ten centimetres and a wall that bulges by one; the first corner sees all others.
+  const std::vector<Vec2> plan = {{0, 8}, {0, 0}, {6, 0}, {6, 0.1}, {10, 0.1}, {10.01, 4}, {10, 8}};
   Source step = house("step");
   step.mesh = {};
   const int n = static_cast<int>(plan.size());
