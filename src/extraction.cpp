@@ -99,7 +99,7 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& si
                                                                     : std::vector<char>();
 }
 
-/// Few centimetres of a plane are a detail where planes are known to the millimetre.
+/// Where planes are known to the millimetre, what reaches a millimetre into a cell cuts it.
 Partition cut(const CuttingPlan& plan, const Planes& planes, const ExtractionOptions& options) {
   PartitionOptions cutting{.max_cells = options.max_cells};
   if (!options.is_paper)
