@@ -13,6 +13,7 @@
 #include <set>
 
 #include "../src/error.h"
+#include "check_switching.h"
 #include "tiles3d_frame.h"
 
 namespace colod {
@@ -54,15 +55,16 @@ Transform product(const Transform& a, const Transform& b) {
 
 /// Where one building is shown.
 struct Shown {
-  Box box;  // in the tileset's frame
-  double error;
+  Box box;           // in the tileset's frame
+  double deviation;  // metres
   std::string where;
 };
 
 struct Walk {
   std::vector<Finding>& findings;
   std::set<std::string> files;  // GLBs met
-  double scale = 0;             // k of asset.extras; 0: not said
+  double target_sse = 0;        // of asset.extras; 0: not said
+  ScopeCheck scope;
   std::map<std::string, std::vector<Shown>> buildings;
 
   void report(const std::string& code, const std::string& where, const std::string& message) {
@@ -101,7 +103,7 @@ void check_content(Walk& walk, const Json& tile, const Place& place, const fs::p
   const GlbContent content = check_glb(slurp(path), path.string(), walk.findings);
   if (content.meshes.empty() || content.has_transforms) return;
   Box seen;
-  std::vector<Box> of_feature(content.names.size());
+  std::vector<Box> of_feature(content.rows.size());
   const auto& mesh = content.meshes[0];
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     seen.extend(mesh.positions[v]);
@@ -113,19 +115,21 @@ void check_content(Walk& walk, const Json& tile, const Place& place, const fs::p
     walk.report("content-box", place.where, "the content lies outside the tile's box (z up)");
   else if (!tile.contains("children") && box.diagonal() > kLoosest * seen.diagonal() + kSlack)
     walk.report("loose-box", place.where, "the box is wider than the content");
-  double worst = 0;
-  for (std::size_t f = 0; f < content.names.size(); ++f) {
-    worst = std::max(worst, content.errors[f]);
+  double farthest = 0;
+  for (std::size_t f = 0; f < content.rows.size(); ++f) {
+    const GlbContent::Row& row = content.rows[f];
+    farthest = std::max(farthest, row.gsd);
     if (!of_feature[f].is_empty())
-      walk.buildings[content.names[f]].push_back(
-          {moved(of_feature[f], place.transform), content.errors[f], place.where});
+      walk.buildings[row.name].push_back(
+          {moved(of_feature[f], place.transform), row.deviation, place.where});
   }
-  if (tile.contains("children") && walk.scale > 0 &&
-      tile.at("geometricError").get<double>() < 0.99 * walk.scale * worst)
-    walk.report("error-unmeasured", place.where,
-                "the geometric error is less than errorScale times the content's error");
+  walk.scope.add(content.rows, place.where);
+  if (tile.contains("children") && walk.target_sse > 0 &&
+      tile.at("geometricError").get<double>() < 0.99 * walk.target_sse * farthest)
+    walk.report("error-gsd", place.where,
+                "the geometric error is less than targetSse times the content's gsd");
   const std::string building = tile.value("extras", Json::object()).value("building", "");
-  if (!building.empty() && (content.names.size() != 1 || content.names[0] != building))
+  if (!building.empty() && (content.rows.size() != 1 || content.rows[0].name != building))
     walk.report("identity", place.where, "extras.building is not the property table's name");
 }
 
@@ -178,12 +182,12 @@ void check_tile(Walk& walk, const Json& tile, Place place) {
   }
 }
 
-/// The same building stands at the same place in every tile, to within the errors.
+/// The same building stands at the same place in every tile, to within the deviations.
 void check_identity(Walk& walk) {
   for (const auto& [name, places] : walk.buildings)
     for (const Shown& shown : places) {
       const Shown& first = places.front();
-      const double slack = first.error + shown.error + 0.05;
+      const double slack = first.deviation + shown.deviation + 0.05;
       const double off = std::max((shown.box.min - first.box.min).cwiseAbs().maxCoeff(),
                                   (shown.box.max - first.box.max).cwiseAbs().maxCoeff());
       if (off > slack) {
@@ -203,7 +207,9 @@ void walk_tileset(Walk& walk, const std::string& path) {
   try {
     const Json asset = tileset.at("asset");
     if (asset.at("version") != "1.1") walk.report("version", path, "asset.version is not 1.1");
-    walk.scale = asset.value("extras", Json::object()).value("errorScale", 0.0);
+    const Json extras = asset.value("extras", Json::object());
+    walk.target_sse = extras.value("targetSse", 0.0);
+    walk.scope.expect(extras.value("switching", Json::object()));
     const double error = tileset.at("geometricError"), root = tileset["root"].at("geometricError");
     if (error <= 0 || (tileset["root"].contains("children") && root <= 0))
       walk.report("error-zero", path, "geometric errors of 0: nothing would ever be refined");
@@ -229,8 +235,9 @@ void walk_tileset(Walk& walk, const std::string& path) {
 }  // namespace
 
 void check_tileset(const std::string& path, std::vector<Finding>& findings) {
-  Walk walk{findings, {}, 0, {}};
+  Walk walk{findings, {}, 0, {}, {}};
   walk_tileset(walk, path);
+  walk.scope.report(findings);
 }
 
 std::vector<Finding> check_output(const std::string& path) {
@@ -243,7 +250,7 @@ std::vector<Finding> check_output(const std::string& path) {
       check_glb(slurp(path), path, findings);
     return findings;
   }
-  Walk walk{findings, {}, 0, {}};
+  Walk walk{findings, {}, 0, {}, {}};
   const fs::path tileset = fs::path(path) / "tileset.json";
   const bool has_tileset = fs::exists(tileset);
   if (has_tileset) walk_tileset(walk, tileset.string());
@@ -255,7 +262,16 @@ std::vector<Finding> check_output(const std::string& path) {
   std::sort(others.begin(), others.end());
   if (!has_tileset && others.empty())
     throw Error(Stage::kInput, path, "holds neither tileset.json nor a GLB");
-  for (const std::string& file : others) check_glb(slurp(file), file, findings);
+  for (const std::string& file : others) {
+    const GlbContent content = check_glb(slurp(file), file, findings);
+    if (!content.json.is_object()) continue;
+    walk.scope.expect(
+        content.json.value("/asset/extras/switching"_json_pointer, Json(Json::object())));
+    walk.scope.add(content.rows, file);
+  }
+  if (const fs::path lods = fs::path(path) / "engine" / "lods.json"; fs::exists(lods))
+    check_lods(slurp(lods), lods.string(), walk.scope, findings);
+  walk.scope.report(findings);
   return findings;
 }
 

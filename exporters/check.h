@@ -24,15 +24,21 @@ struct GlbContent {
     std::vector<std::uint32_t> features;  ///< per position; empty: no ids
     std::vector<Face> faces;
   };
+  /// A row of the property table.
+  struct Row {
+    std::string name;
+    int layer = -1, coarsest_layer = -1;  ///< −1: a stand-in
+    double gsd = 0;                       ///< metres a pixel
+    double deviation = 0;                 ///< metres
+  };
   nlohmann::json json;
   std::vector<MeshContent> meshes;  ///< first primitives only; empty where damaged
-  std::vector<std::string> names;   ///< rows of the property table
-  std::vector<double> errors;       ///< of the rows, metres
-  bool has_transforms = false;      ///< some node is moved: positions are not the scene's
+  std::vector<Row> rows;
+  bool has_transforms = false;  ///< some node is moved: positions are not the scene's
 };
 
 /// Containers, accessors against decoded data, normals against windings, feature ids, property
-/// tables, MSFT_lod. Never throws for what the bytes hold.
+/// tables, MSFT_lod with its gsds and coverages. Never throws for what the bytes hold.
 GlbContent check_glb(const std::string& bytes, const std::string& where,
                      std::vector<Finding>& findings);
 

@@ -263,7 +263,22 @@ void check_features(Glb& glb, const Json& primitive, const std::string& place,
     }
 }
 
-/// Names and errors of the property table; reports what cannot be read.
+std::string column(const Glb& glb, const Json& properties, const char* name,
+                   const char* part = "values") {
+  return slice(glb, glb.json["bufferViews"].at(properties.at(name).at(part).get<std::size_t>()));
+}
+
+void check_alignment(Glb& glb, const Json& properties) {
+  for (const auto& [property, parts] : properties.items())
+    for (const char* part : {"values", "stringOffsets"}) {
+      if (!parts.contains(part)) continue;
+      const Json& view = glb.json.at("bufferViews").at(parts[part].get<std::size_t>());
+      if (view.value("byteOffset", std::size_t{0}) % 8 != 0)
+        glb.report("table", property, "its bytes do not start at a multiple of 8");
+    }
+}
+
+/// The rows of the property table; reports what cannot be read.
 void read_table(Glb& glb, GlbContent& out) {
   const Json metadata =
       glb.json.value("extensions", Json::object()).value("EXT_structural_metadata", Json());
@@ -271,38 +286,80 @@ void read_table(Glb& glb, GlbContent& out) {
   const Json& table = metadata.at("propertyTables").at(0);
   const std::size_t count = table.at("count");
   const Json& properties = table.at("properties");
-  for (const auto& [property, column] : properties.items())
-    for (const char* part : {"values", "stringOffsets"}) {
-      if (!column.contains(part)) continue;
-      const Json& view = glb.json.at("bufferViews").at(column[part].get<std::size_t>());
-      if (view.value("byteOffset", std::size_t{0}) % 8 != 0)
-        glb.report("table", property, "its bytes do not start at a multiple of 8");
-    }
-  const std::string values =
-      slice(glb, glb.json["bufferViews"].at(properties.at("name").at("values").get<std::size_t>()));
-  const std::string offsets = slice(
-      glb,
-      glb.json["bufferViews"].at(properties.at("name").at("stringOffsets").get<std::size_t>()));
-  const std::string errors = slice(
-      glb, glb.json["bufferViews"].at(properties.at("error").at("values").get<std::size_t>()));
-  if (offsets.size() != 4 * (count + 1) || errors.size() != 4 * count) {
+  check_alignment(glb, properties);
+  const std::string names = column(glb, properties, "name"),
+                    offsets = column(glb, properties, "name", "stringOffsets"),
+                    layers = column(glb, properties, "layer"),
+                    coarsest = column(glb, properties, "coarsest_layer"),
+                    gsds = column(glb, properties, "gsd"),
+                    deviations = column(glb, properties, "deviation");
+  if (offsets.size() != 4 * (count + 1) || gsds.size() != 4 * count ||
+      deviations.size() != 4 * count || layers.size() != 2 * count ||
+      coarsest.size() != 2 * count) {
     glb.report("table", "name", "columns are not as long as the table");
     return;
   }
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t from = u32(offsets, 4 * i), to = u32(offsets, 4 * i + 4);
-    if (from > to || to > values.size()) {
+    if (from > to || to > names.size()) {
       glb.report("table", "name", "string offsets fall or reach beyond the strings");
       return;
     }
-    out.names.push_back(values.substr(from, to - from));
-    out.errors.push_back(element(errors, 4 * i, 5126));
-    if (!(out.errors.back() >= 0)) glb.report("table", "error", "an error below zero");
+    const GlbContent::Row row{names.substr(from, to - from),
+                              static_cast<int>(element(layers, 2 * i, 5122)),
+                              static_cast<int>(element(coarsest, 2 * i, 5122)),
+                              element(gsds, 4 * i, 5126), element(deviations, 4 * i, 5126)};
+    if (!(row.gsd >= 0) || !(row.deviation >= 0))
+      glb.report("table", "gsd", "a gsd or deviation below zero");
+    if (row.coarsest_layer > row.layer)
+      glb.report("table", "layer", "coarsest_layer is finer than layer");
+    out.rows.push_back(row);
   }
 }
 
-/// The levels' nodes, finest first: in no scene and under no parent, named, lighter and lighter,
-/// less and less exact, coarsest first in the file.
+/// Whether every position of one mesh is one of the other's, to within what both are rounded by,
+/// and both have as many faces.
+bool is_alike(const MeshContent& a, const MeshContent& b) {
+  constexpr double kReach = 0.006;  // metres: a default grid, and the finest level's
+  if (a.faces.size() != b.faces.size() || a.positions.size() != b.positions.size()) return false;
+  const auto by_x = [](const Vec3& u, const Vec3& v) { return u.x() < v.x(); };
+  std::vector<Vec3> sorted = b.positions;
+  std::sort(sorted.begin(), sorted.end(), by_x);
+  return std::all_of(a.positions.begin(), a.positions.end(), [&](const Vec3& p) {
+    const Vec3 before = p - Vec3::Constant(kReach);
+    for (auto q = std::lower_bound(sorted.begin(), sorted.end(), before, by_x);
+         q != sorted.end() && q->x() <= p.x() + kReach; ++q)
+      if ((*q - p).cwiseAbs().maxCoeff() <= kReach) return true;
+    return false;
+  });
+}
+
+/// A switch's ground sample distance as the node says it.
+double gsd_of(const Json& node) { return node.value("extras", Json::object()).value("gsd", 0.0); }
+
+/// Coverages fall strictly from at most 1 to 0, and are D / (g·H) where the file says H.
+void check_coverage(Glb& glb, const std::string& place, const Json& node,
+                    const std::vector<double>& gsds, double diameter) {
+  constexpr double kSlack = 0.02;  // relative: D is of rounded positions, coverages are kept apart
+  const Json coverage =
+      node.value("extras", Json::object()).value("MSFT_screencoverage", Json::array());
+  bool falls = coverage.size() == gsds.size();
+  for (std::size_t i = 0; falls && i < coverage.size(); ++i)
+    falls = coverage[i].get<double>() <= 1 && (i == 0 || coverage[i] < coverage[i - 1]);
+  if (!falls || coverage.back() != 0) {
+    glb.report("lod-coverage", place, "coverages do not fall strictly from at most 1 to 0");
+    return;
+  }
+  const double height = glb.json.value("/asset/extras/switching/viewportHeight"_json_pointer, 0.0);
+  for (std::size_t i = 0; height > 0 && i + 1 < gsds.size(); ++i) {
+    const double told = coverage[i], measured = std::min(1.0, diameter / (gsds[i + 1] * height));
+    if (std::abs(told - measured) > kSlack * measured)
+      glb.report("lod-coverage", place, "a coverage is not what the next level's gsd makes it");
+  }
+}
+
+/// The levels' nodes, finest first: in no scene, named, lighter and lighter, for farther and
+/// farther away, no two alike.
 void check_levels(Glb& glb, const GlbContent& content) {
   const Json nodes = glb.json.value("nodes", Json::array());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -320,24 +377,27 @@ void check_levels(Glb& glb, const GlbContent& content) {
       for (const Json& scene : glb.json.value("scenes", Json::array()))
         for (const Json& root : scene.value("nodes", Json::array()))
           if (root == levels[i]) glb.report("lod-nodes", place, "a lower level stands in a scene");
-      const Json &finer = nodes.at(levels[i - 1]),
-                 finer_extras = finer.value("extras", Json::object()),
-                 extras = node.value("extras", Json::object());
-      const auto faces = [&](const Json& of) {
-        return content.meshes.at(of.at("mesh").get<std::size_t>()).faces.size();
+      const Json& finer = nodes.at(levels[i - 1]);
+      const auto mesh = [&](const Json& of) -> const MeshContent& {
+        return content.meshes.at(of.at("mesh").get<std::size_t>());
       };
-      if (extras.value("layer", -1) >= finer_extras.value("layer", 0) ||
-          faces(node) > faces(finer) ||
-          extras.value("geometricError", 0.0) < finer_extras.value("geometricError", 0.0))
+      const auto layer = [](const Json& of) {
+        return of.value("extras", Json::object()).value("layer", -1);
+      };
+      if (layer(node) >= layer(finer) || mesh(node).faces.size() > mesh(finer).faces.size())
         glb.report("lod-order", place, "levels do not go from fine to coarse");
+      if (!(gsd_of(node) > gsd_of(finer)))
+        glb.report("lod-gsd", place, "a coarser level's gsd is not greater than the finer one's");
+      if (is_alike(mesh(node), mesh(finer)))
+        glb.report("lod-alike", place, "two levels are the same mesh");
     }
-    const Json coverage =
-        nodes[n].value("extras", Json::object()).value("MSFT_screencoverage", Json::array());
-    bool falls = coverage.size() == levels.size();
-    for (std::size_t i = 0; falls && i < coverage.size(); ++i)
-      falls = coverage[i].get<double>() <= 1 && (i == 0 || coverage[i] < coverage[i - 1]);
-    if (!falls || coverage.back() != 0)
-      glb.report("lod-coverage", place, "coverages do not fall strictly from at most 1 to 0");
+    std::vector<double> gsds;
+    for (const std::size_t level : levels) gsds.push_back(gsd_of(nodes.at(level)));
+    if (gsds.front() != 0) glb.report("lod-gsd", place, "the finest level's gsd is not 0");
+    Box box;
+    for (const Vec3& p : content.meshes.at(nodes[n].at("mesh").get<std::size_t>()).positions)
+      box.extend(p);
+    check_coverage(glb, place, nodes[n], gsds, box.diagonal());
   }
 }
 
@@ -363,7 +423,7 @@ GlbContent check_glb(const std::string& bytes, const std::string& where,
       }
       check_bounds(glb, primitive, place, mesh);
       check_surface(glb, place, mesh);
-      check_features(glb, primitive, place, mesh, out.names.size());
+      check_features(glb, primitive, place, mesh, out.rows.size());
     }
     check_levels(glb, out);
     for (const Json& node : glb.json.value("nodes", Json::array()))

@@ -7,10 +7,8 @@
 namespace colod {
 
 struct EngineOptions {
-  double quantization = 0.01;     ///< metres: positions stay within it, finer for the finest layer
-  double pixel_error = 2;         ///< p: a level is shown where its error is at most p pixels
-  double viewport_height = 1080;  ///< pixels
-  double fov_y_deg = 60;          ///< of the camera that switch distances are for
+  double quantization = 0.01;  ///< metres: positions stay within it, finer for the finest layer
+  SwitchFacts switching = {};
 };
 
 /// engine/<name>_LOD<n>.glb, n = 0 the finest: uncompressed, y up, metres, pivot at the middle of
@@ -19,8 +17,8 @@ struct EngineOptions {
 std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
                                           const EngineOptions& options = {});
 
-/// engine/lods.json over all buildings: pivots in the world, and per level its error, switch
-/// distance and screen size.
+/// engine/lods.json over all buildings: pivots in the world, and per level its gsd, deviation,
+/// switch distance and screen size.
 Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
                          const EngineOptions& options = {});
 

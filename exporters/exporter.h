@@ -20,22 +20,33 @@ struct Encoded {
 /// EXT_meshopt_compression.
 enum class Compression { kNone, kDraco, kMeshopt };
 
-/// One layer of one building as exporters see it. Coordinates: building-local metres, z up, axes
-/// parallel to the world's (the pipeline has undone the frame's yaw); world = local +
-/// ExportBuilding::origin.
-struct ExportLayer {
-  int layer = 0;  ///< 0 = coarsest
+/// A mesh of one building as exporters see it: one layer, or several that are alike. Coordinates:
+/// building-local metres, z up, axes parallel to the world's (the pipeline has undone the frame's
+/// yaw); world = local + ExportBuilding::origin.
+struct ExportLevel {
+  std::vector<int> layers;  ///< that it is, rising; 0 = coarsest
   PolygonMesh mesh;
-  double geometric_error = 0;  ///< metres, measured: the one-sided Hausdorff distance source →
-                               ///< layer and, after measure_visible_errors, to finer layers both
-                               ///< ways; never less than a finer layer's
+  double gsd = 0;        ///< metres a pixel: from where on it may stand for the finest level; falls
+                         ///< strictly from level to level, 0 for the finest
+  double deviation = 0;  ///< metres, two-sided, from the finest level
 };
 
 struct ExportBuilding {
   std::string name;
   std::string source;               ///< file it came from
   Vec3 origin = Vec3::Zero();       ///< world position of the local origin
-  std::vector<ExportLayer> layers;  ///< coarsest first; not empty; layers that failed are absent
+  std::vector<ExportLevel> levels;  ///< coarsest first; not empty; layers that failed are absent
+};
+
+/// How the levels' gsd came about, for whoever reads the files.
+struct SwitchFacts {
+  std::string measure = "visual";  ///< or "deviation"
+  std::string scope = "scene";     ///< or "building"
+  double visual_error = 8;         ///< pixels that the difference may have (visual)
+  double pixel_error = 2;          ///< pixels that the deviation may have (deviation; stand-ins)
+  double viewport_height = 1080;   ///< pixels, that coverages and distances are for
+  double fov_y_deg = 60;           ///< of the camera that distances are for
+  std::vector<double> layer_gsd;   ///< scope scene: per layer; else empty
 };
 
 /// Where the scene stands on Earth.

@@ -8,13 +8,18 @@ namespace colod {
 struct GlbOptions {
   Compression compression = Compression::kDraco;
   double quantization = 0.01;  ///< metres: bound on the position error, finer for the finest layer
-  double pixel_error = 2;      ///< p of c_k = p·D/(ε_{k+1}·H)
-  double viewport_height = 1080;  ///< H
+  SwitchFacts switching = {};
+};
+
+/// The file, and how much of it each level's mesh takes.
+struct BuildingGlb : Encoded {
+  std::vector<std::size_t> level_bytes;  ///< coarsest first
 };
 
 /// path: buildings/<name>.glb. Finest layer on the root node, named <name>_LOD0; coarser ones in
 /// MSFT_lod.ids by falling detail; coarsest first in the binary chunk, the property table of the
-/// levels after them.
-Encoded encode_building_glb(const ExportBuilding& building, const GlbOptions& options = {});
+/// levels after them. Coverages are c = D / (g·H), with g of the next coarser level, D the bounding
+/// sphere's diameter and H the viewport's height.
+BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions& options = {});
 
 }  // namespace colod

@@ -1,6 +1,6 @@
 // Based on: EXT_mesh_features, EXT_structural_metadata (3D Tiles Next drafts that 3D Tiles 1.1
 // names).
-// Differs: the same five columns everywhere.
+// Differs: the same columns everywhere.
 #include "metadata.h"
 
 namespace colod {
@@ -40,7 +40,9 @@ Json schema() {
   Json properties;
   properties["name"] = {{"type", "STRING"}};
   properties["layer"] = scalar("INT16");
-  properties["error"] = scalar("FLOAT32");
+  properties["coarsest_layer"] = scalar("INT16");
+  properties["gsd"] = scalar("FLOAT32");
+  properties["deviation"] = scalar("FLOAT32");
   properties["source"] = {{"type", "STRING"}};
   properties["faces"] = scalar("UINT32");
   Json out;
@@ -51,20 +53,43 @@ Json schema() {
 
 }  // namespace
 
+Feature feature_of(const ExportBuilding& building, const ExportLevel& level, double deviation,
+                   std::size_t faces) {
+  return {building.name, level.layers.back(), level.layers.front(),
+          level.gsd,     deviation,           building.source,
+          faces};
+}
+
+Json switching_json(const SwitchFacts& facts) {
+  Json json = {{"measure", facts.measure},
+               {"scope", facts.scope},
+               {"visualError", facts.visual_error},
+               {"pixelError", facts.pixel_error},
+               {"viewportHeight", facts.viewport_height},
+               {"fovYDeg", facts.fov_y_deg}};
+  for (std::size_t k = 0; k < facts.layer_gsd.size(); ++k)
+    json["layers"].push_back({{"layer", k}, {"gsd", facts.layer_gsd[k]}});
+  return json;
+}
+
 void add_features(GltfDocument& document, const std::vector<Feature>& features) {
   std::vector<std::string> names, sources;
-  std::string layers, errors, faces;
+  std::string layers, coarsest, gsds, deviations, faces;
   for (const Feature& f : features) {
     names.push_back(f.name);
     sources.push_back(f.source);
     put(layers, static_cast<std::int16_t>(f.layer));
-    put(errors, static_cast<float>(f.error));
+    put(coarsest, static_cast<std::int16_t>(f.coarsest_layer));
+    put(gsds, static_cast<float>(f.gsd));
+    put(deviations, static_cast<float>(f.deviation));
     put(faces, static_cast<std::uint32_t>(f.faces));
   }
   Json table = {{"class", "building"}, {"count", features.size()}};
   table["properties"]["name"] = string_column(document, names);
   table["properties"]["layer"]["values"] = add_buffer_view(document, layers);
-  table["properties"]["error"]["values"] = add_buffer_view(document, errors);
+  table["properties"]["coarsest_layer"]["values"] = add_buffer_view(document, coarsest);
+  table["properties"]["gsd"]["values"] = add_buffer_view(document, gsds);
+  table["properties"]["deviation"]["values"] = add_buffer_view(document, deviations);
   table["properties"]["source"] = string_column(document, sources);
   table["properties"]["faces"]["values"] = add_buffer_view(document, faces);
   document.json["extensions"]["EXT_structural_metadata"] = {

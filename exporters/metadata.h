@@ -7,14 +7,23 @@ namespace colod {
 
 /// A row of the property table.
 struct Feature {
-  std::string name;       ///< the building's; of several, the first ones' and how many more
-  int layer = -1;         ///< −1: a stand-in, coarser than layer 0
-  double error = 0;       ///< metres, measured, rounding included
-  std::string source;     ///< file; empty where several differ
-  std::size_t faces = 0;  ///< triangles as written
+  std::string name;  ///< the building's; of several, the first ones' and how many more
+  int layer = -1;    ///< −1: a stand-in, coarser than layer 0; of alike layers the finest …
+  int coarsest_layer = -1;  ///< … and the coarsest
+  double gsd = 0;           ///< metres a pixel, from where on it is shown
+  double deviation = 0;     ///< metres from the finest layer, rounding included
+  std::string source;       ///< file; empty where several differ
+  std::size_t faces = 0;    ///< triangles as written
 };
 
 constexpr int kMostFeatures = 1 << 24;  ///< ids beyond are no exact floats
+
+/// The row of one building's level.
+Feature feature_of(const ExportBuilding& building, const ExportLevel& level, double deviation,
+                   std::size_t faces);
+
+/// As in asset.extras: measure, scope, bounds in pixels, viewport and the scene's gsd per layer.
+nlohmann::ordered_json switching_json(const SwitchFacts& facts);
 
 /// Adds the schema and one property table with these rows; names the extensions.
 void add_features(GltfDocument& document, const std::vector<Feature>& features);

@@ -51,43 +51,43 @@ bool is_strictly_convex(const PolygonMesh& mesh, const PolygonMesh::Facet& facet
   return turned < 3 * std::numbers::pi;  // once round, not twice
 }
 
-std::string stem(const ExportBuilding& building, const ExportLayer& layer) {
-  return "buildings/" + building.name + ".layer" + std::to_string(layer.layer);
+std::string stem(const ExportBuilding& building, int layer) {
+  return "buildings/" + building.name + ".layer" + std::to_string(layer);
 }
 
 }  // namespace
 
-Encoded encode_obj(const ExportBuilding& building, const ExportLayer& layer) {
-  std::string out = "# colod: layer " + std::to_string(layer.layer) +
+Encoded encode_obj(const ExportBuilding& building, const ExportLevel& level, int layer) {
+  std::string out = "# colod: layer " + std::to_string(layer) +
                     " (0 = coarsest), metres, z up, world coordinates\n";
-  out += "o " + building.name + ".layer" + std::to_string(layer.layer) + "\n";
-  for (const Vec3& p : layer.mesh.vertices) {
+  out += "o " + building.name + ".layer" + std::to_string(layer) + "\n";
+  for (const Vec3& p : level.mesh.vertices) {
     const Vec3 world = p + building.origin;
     out += 'v';
     for (int k = 0; k < 3; ++k) out += ' ', print(out, world[k]);
     out += '\n';
   }
   std::vector<char> is_polygon;
-  for (const PolygonMesh::Facet& f : layer.mesh.facets)
-    is_polygon.push_back(is_strictly_convex(layer.mesh, f));
+  for (const PolygonMesh::Facet& f : level.mesh.facets)
+    is_polygon.push_back(is_strictly_convex(level.mesh, f));
   for (std::size_t f = 0; f < is_polygon.size(); ++f)
-    if (is_polygon[f]) print_face(out, layer.mesh.facets[f].rings[0]);
-  for (std::size_t t = 0; t < layer.mesh.triangles.size(); ++t)
-    if (!is_polygon[layer.mesh.facet_of_triangle[t]]) print_face(out, layer.mesh.triangles[t]);
+    if (is_polygon[f]) print_face(out, level.mesh.facets[f].rings[0]);
+  for (std::size_t t = 0; t < level.mesh.triangles.size(); ++t)
+    if (!is_polygon[level.mesh.facet_of_triangle[t]]) print_face(out, level.mesh.triangles[t]);
   return {stem(building, layer) + ".obj", out};
 }
 
-Encoded encode_ply(const ExportBuilding& building, const ExportLayer& layer) {
+Encoded encode_ply(const ExportBuilding& building, const ExportLevel& level, int layer) {
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment colod: layer " +
-                    std::to_string(layer.layer) +
+                    std::to_string(layer) +
                     " (0 = coarsest), metres, z up, world coordinates\nelement vertex " +
-                    std::to_string(layer.mesh.vertices.size()) +
+                    std::to_string(level.mesh.vertices.size()) +
                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                    std::to_string(layer.mesh.triangles.size()) +
+                    std::to_string(level.mesh.triangles.size()) +
                     "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const Vec3& p : layer.mesh.vertices)
+  for (const Vec3& p : level.mesh.vertices)
     for (int k = 0; k < 3; ++k) put(out, p[k] + building.origin[k]);
-  for (const Face& f : layer.mesh.triangles) {
+  for (const Face& f : level.mesh.triangles) {
     put(out, std::uint8_t{3});
     for (const int v : f) put(out, static_cast<std::int32_t>(v));
   }

@@ -6,8 +6,8 @@
 
 namespace colod {
 
-/// path: buildings/<name>.layer<k>.obj / .ply
-Encoded encode_obj(const ExportBuilding& building, const ExportLayer& layer);
-Encoded encode_ply(const ExportBuilding& building, const ExportLayer& layer);
+/// path: buildings/<name>.layer<k>.obj / .ply, k = `layer`, one of the level's.
+Encoded encode_obj(const ExportBuilding& building, const ExportLevel& level, int layer);
+Encoded encode_ply(const ExportBuilding& building, const ExportLevel& level, int layer);
 
 }  // namespace colod

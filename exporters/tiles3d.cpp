@@ -1,8 +1,7 @@
 // Based on: 3D Tiles 1.1 (OGC 22-025r4), EXT_mesh_features, EXT_structural_metadata.
-// Differs: geometric errors are measured, times k = target_sse / pixel_error, instead of guessed
-// from box sizes; all tiles share one quantization step or a power of two of it, so that neighbours
-// do not crack.
-// Notation: k as above; eps the content's error in metres, rounding included.
+// Differs: geometric errors come from measured switches instead of guesses from box sizes; all
+// tiles share one quantization step or a power of two of it, so that neighbours do not crack.
+// Notation: gsd metres a pixel, from where on a tile's content may be shown.
 #include "tiles3d.h"
 
 #include <algorithm>
@@ -34,7 +33,7 @@ struct Content {
   std::string folder;  // of the tileset that the tile belongs to, "" or "tiles/<cell>/"
   Encoded file;
   Box box;  // z-up tile space
-  double eps = 0;
+  double gsd = 0;
 };
 
 struct Scene {
@@ -69,7 +68,13 @@ std::string percent_encoded(const std::string& path) {
 Json vec_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Feature feature_of(const Scene& scene, const TilePart& part, double rounding, std::size_t faces) {
-  Feature f{{}, part.layer, part.error + rounding, {}, faces};
+  if (part.level)
+    return feature_of(scene.buildings[part.buildings[0]], *part.level, part.deviation + rounding,
+                      faces);
+  Feature f;
+  f.gsd = part.deviation / scene.options.switching.pixel_error;
+  f.deviation = part.deviation + rounding;
+  f.faces = faces;
   for (std::size_t i = 0; i < std::min(kMostNames, part.buildings.size()); ++i)
     f.name += (i ? ", " : "") + scene.buildings[part.buildings[i]].name;
   if (part.buildings.size() > kMostNames)
@@ -105,8 +110,15 @@ QuantizationGrid content_grid(const std::vector<PolygonMesh>& parts, double boun
 double rounding_bound(const PlannedTile& tile, const TilesOptions& options) {
   if (tile.is_finest) return kFinestShare * options.quantization;
   double least = std::numeric_limits<double>::infinity();
-  for (const TilePart& part : tile.parts) least = std::min(least, part.layer < 0 ? part.error : 0);
+  for (const TilePart& part : tile.parts) least = std::min(least, part.level ? 0 : part.deviation);
   return std::max(options.quantization, kStandInShare * least);
+}
+
+/// Whom and which layers a tile of one part shows.
+Json identity_json(const std::string& name, const TilePart& part) {
+  const int finest = part.level ? part.level->layers.back() : -1;
+  const int coarsest = part.level ? part.level->layers.front() : -1;
+  return {{"building", name}, {"layer", finest}, {"coarsestLayer", coarsest}};
 }
 
 /// One GLB with the tile's parts merged.
@@ -120,7 +132,7 @@ void encode_content(const Scene& scene, Content& content) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const FlatMesh flat = flatten(parts[i], Vec3::Zero(), grid, static_cast<int>(i));
     features.push_back(feature_of(scene, tile.parts[i], grid.error(), flat.triangles.size()));
-    content.eps = std::max(content.eps, features.back().error);
+    content.gsd = std::max(content.gsd, features.back().gsd);
     append(merged, flat);
   }
   GltfDocument document = start_gltf();
@@ -130,8 +142,7 @@ void encode_content(const Scene& scene, Content& content) {
   Json primitive = add_primitive(document, merged, grid, scene.options.compression, &seen);
   primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());
   Json node = {{"name", tile.name}, {"mesh", 0}};
-  if (features.size() == 1)
-    node["extras"] = {{"building", features[0].name}, {"layer", features[0].layer}};
+  if (features.size() == 1) node["extras"] = identity_json(features[0].name, tile.parts[0]);
   document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
   document.json["nodes"].push_back(node);
   add_features(document, features);
@@ -153,7 +164,7 @@ void lighten_root(Scene& scene, TilePlan& plan) {
   const auto is_light = [&] { return static_cast<double>(root.file.bytes.size()) <= allowed; };
   const auto show_merged = [&](std::size_t count) {
     show_farthest(plan, merge_stand_ins(plan.farthest, count));
-    root.box = {}, root.eps = 0;
+    root.box = {}, root.gsd = 0;
     encode_content(scene, root);
   };
   if (is_light()) return;
@@ -198,8 +209,7 @@ Json start_tileset(const Scene& scene, const TileFrame& frame, Tile root) {
       {"crs", place.to_ecef ? Json(place.name) : Json(nullptr)},
       {"offset", vec_json(frame.origin())},
       {"targetSse", scene.options.target_sse},
-      {"pixelError", scene.options.pixel_error},
-      {"errorScale", scene.options.target_sse / scene.options.pixel_error}};
+      {"switching", switching_json(scene.options.switching)}};
   tileset["geometricError"] = std::max(16 * root.error, root.box.diagonal());  // drawn from afar
   root.json["refine"] = "REPLACE";
   tileset["root"] = std::move(root.json);
@@ -211,7 +221,8 @@ std::string dumped(const Json& json) {
 }
 
 /// The tile at `next` in the list of contents, with all below; `next` moves behind them. Its error
-/// is k times the content's eps, raised where children would not lie strictly below; 0 for a leaf.
+/// is target_sse times the content's gsd, raised where children would not lie strictly below; 0 for
+/// a leaf.
 Tile assemble(Scene& scene, std::size_t& next);
 
 /// A tile whose content is the cell's own tileset.
@@ -236,8 +247,8 @@ Tile assemble(Scene& scene, std::size_t& next) {
   const Content& content = scene.contents[self];
   Tile tile;
   tile.box = content.box;
-  const double k = scene.options.target_sse / scene.options.pixel_error;
-  if (!planned.children.empty()) tile.error = std::max(kLeastError, k * content.eps);
+  if (!planned.children.empty())
+    tile.error = std::max(kLeastError, scene.options.target_sse * content.gsd);
   Json children = Json::array();
   for (std::size_t i = 0; i < planned.children.size(); ++i) {
     Tile child = assemble(scene, next);
@@ -248,9 +259,9 @@ Tile assemble(Scene& scene, std::size_t& next) {
   tile.json["boundingVolume"] = box_json(tile.box);
   tile.json["geometricError"] = tile.error;
   tile.json["content"]["uri"] = percent_encoded(content.file.path.substr(content.folder.size()));
-  if (planned.parts.size() == 1 && planned.parts[0].layer >= 0)
-    tile.json["extras"] = {{"building", scene.buildings[planned.parts[0].buildings[0]].name},
-                           {"layer", planned.parts[0].layer}};
+  if (planned.parts.size() == 1 && planned.parts[0].level)
+    tile.json["extras"] =
+        identity_json(scene.buildings[planned.parts[0].buildings[0]].name, planned.parts[0]);
   if (!children.empty()) tile.json["children"] = std::move(children);
   if (planned.is_cell && self > 0) return wrap_cell(scene, content, std::move(tile));
   return tile;
@@ -258,11 +269,11 @@ Tile assemble(Scene& scene, std::size_t& next) {
 
 void check(const std::vector<ExportBuilding>& buildings) {
   for (const ExportBuilding& b : buildings) {
-    const bool is_whole = !b.layers.empty() &&
-                          std::none_of(b.layers.begin(), b.layers.end(), [](const ExportLayer& l) {
+    const bool is_whole = !b.levels.empty() &&
+                          std::none_of(b.levels.begin(), b.levels.end(), [](const ExportLevel& l) {
                             return l.mesh.triangles.empty();
                           });
-    if (!is_whole) throw Error(Stage::kOutput, b.name, "no layer, or a layer without triangles");
+    if (!is_whole) throw Error(Stage::kOutput, b.name, "no level, or a level without triangles");
   }
   if (buildings.empty()) throw Error(Stage::kOutput, "tileset.json", "no building to write");
 }

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "deviation.h"
+#include "../src/rays.h"
 
 namespace colod {
 
@@ -180,8 +180,8 @@ double cost(const StandIn& a, const StandIn& b) {
 }  // namespace
 
 StandIn stand_in_for(const ExportBuilding& building, int index) {
-  const Mesh coarsest = building.layers.front().mesh.mesh();
-  const Mesh finest = building.layers.back().mesh.mesh();
+  const Mesh coarsest = building.levels.front().mesh.mesh();
+  const Mesh finest = building.levels.back().mesh.mesh();
   StandIn box = least_box_about(coarsest.vertices);
   const RayScene coarse_scene(coarsest), fine_scene(finest);
   const double spacing =
@@ -196,7 +196,7 @@ StandIn stand_in_for(const ExportBuilding& building, int index) {
     box.half.z() = std::max(kLeastHalf, share * height);
     double lacking = 0;
     for (const Vec3& p : points) lacking = std::max(lacking, distance(box, p));
-    box.error = lacking + building.layers.back().geometric_error;
+    box.error = lacking;
     for (const Vec3& p : lattice(box)) {  // what the box adds
       if (box.error >= least) break;      // another height is better
       box.error =

@@ -12,8 +12,8 @@ struct StandIn {
   Vec3 origin = Vec3::Zero();  ///< middle of the foot
   double yaw = 0;              ///< radians, of the box's x axis from the world's
   Vec3 half = Vec3::Zero();    ///< half length, half width, and the whole height
-  double error = 0;  ///< metres: no point of the sources is farther from the box, and none
-                     ///< of the box farther from the buildings' finest layers
+  double error = 0;  ///< metres: no point of the buildings' finest levels is farther from the
+                     ///< box, and none of the box farther from them
 };
 
 /// The box of one building: upright about its coarsest layer with the least footprint, as high as

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <span>
 
 #include "../src/parallel.h"
 
@@ -20,12 +19,13 @@ constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm 
 constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
 constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
 constexpr std::size_t kMostStandIns = 64;  // in one tile
+constexpr double kWorthATile = 1.5;  // nearer by this factor: a level's least step (switching.h)
 
 void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<StandIn>& boxes) {
   tile.parts.clear();
   for (const StandIn& box : boxes) {
     meshes.push_back(mesh_of(box));
-    tile.parts.push_back({box.buildings, -1, &meshes.back(), box.origin, box.error});
+    tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.error});
   }
 }
 
@@ -34,7 +34,7 @@ class Planner {
   explicit Planner(const std::vector<ExportBuilding>& buildings)
       : buildings_(buildings), boxes_(buildings.size()), singles_(buildings.size()) {
     parallel_for(buildings.size(), [&](std::size_t i) {
-      for (const Vec3& p : buildings[i].layers.front().mesh.vertices)
+      for (const Vec3& p : buildings[i].levels.front().mesh.vertices)
         boxes_[i].extend(Vec3(p + buildings[i].origin));
       singles_[i] = stand_in_for(buildings[i], static_cast<int>(i));
     });
@@ -77,56 +77,49 @@ class Planner {
     return tile;
   }
 
-  /// Shows the buildings' coarsest layers.
+  /// Shows the buildings' coarsest levels.
   PlannedTile near_tile(const std::vector<int>& group, const std::string& name) const {
     PlannedTile tile{.name = name, .parts = {}, .children = {}};
     const bool has_finer = std::any_of(group.begin(), group.end(),
-                                       [&](int b) { return buildings_[b].layers.size() > 1; });
+                                       [&](int b) { return buildings_[b].levels.size() > 1; });
+    double gsd = 0;
+    for (const int b : group) gsd = std::max(gsd, buildings_[b].levels.front().gsd);
     for (const int b : group) {
       tile.parts.push_back(part_of(b, 0));
-      if (has_finer) tile.children.push_back(chain(b, finer_levels(b)));
+      if (has_finer) tile.children.push_back(chain(b, first_below(b, gsd)));
     }
     tile.is_finest = !has_finer;
     return tile;
   }
 
-  /// The levels below a group's, coarsest first: of layers that are alike the finest, none that is
-  /// like what the group shows but the building's last, whose grid is finer. Never empty: a
-  /// building without a finer layer is replaced by itself.
-  std::vector<std::size_t> finer_levels(int b) const {
-    const std::vector<ExportLayer>& layers = buildings_[b].layers;
-    const auto is_alike = [&](std::size_t i, std::size_t j) {
-      return layers[i].mesh.triangles == layers[j].mesh.triangles &&
-             layers[i].mesh.vertices == layers[j].mesh.vertices;
-    };
-    std::vector<std::size_t> levels;
-    for (std::size_t level = 1; level + 1 < layers.size(); ++level)
-      if (!is_alike(level, level + 1) && !is_alike(0, level)) levels.push_back(level);
-    levels.push_back(layers.size() - 1);
-    return levels;
+  /// The level that a building's chain starts with, below a group that stands from `gsd` on: the
+  /// coarsest again where it may stand much nearer, or has no finer one and is replaced by itself.
+  std::size_t first_below(int b, double gsd) const {
+    const std::vector<ExportLevel>& levels = buildings_[b].levels;
+    return levels.size() == 1 || kWorthATile * levels.front().gsd < gsd ? 0 : 1;
   }
 
-  /// The building's layers of these levels, each the only child of the coarser one.
-  PlannedTile chain(int b, std::span<const std::size_t> levels) const {
+  /// The building's levels from this one on, each the only child of the coarser one.
+  PlannedTile chain(int b, std::size_t level) const {
     const ExportBuilding& building = buildings_[b];
     PlannedTile tile{
-        .name = building.name + ".layer" + std::to_string(building.layers[levels[0]].layer),
-        .parts = {part_of(b, levels[0])},
+        .name = building.name + ".layer" + std::to_string(building.levels[level].layers.back()),
+        .parts = {part_of(b, level)},
         .children = {}};
-    tile.is_finest = levels.size() == 1;
-    if (!tile.is_finest) tile.children.push_back(chain(b, levels.subspan(1)));
+    tile.is_finest = level + 1 == building.levels.size();
+    if (!tile.is_finest) tile.children.push_back(chain(b, level + 1));
     return tile;
   }
 
-  TilePart part_of(int b, std::size_t level) const {
-    const ExportLayer& layer = buildings_[b].layers[level];
-    return {{b}, layer.layer, &layer.mesh, buildings_[b].origin, layer.geometric_error};
+  TilePart part_of(int b, std::size_t number) const {
+    const ExportLevel& level = buildings_[b].levels[number];
+    return {{b}, &level, &level.mesh, buildings_[b].origin, level.deviation};
   }
 
   std::size_t budget(const std::vector<int>& group) const {
     double finest = 0;
     for (const int b : group)
-      finest += static_cast<double>(buildings_[b].layers.back().mesh.triangles.size());
+      finest += static_cast<double>(buildings_[b].levels.back().mesh.triangles.size());
     const auto boxes = [&](double share) {
       return static_cast<std::size_t>(share * finest / kStandInTriangles);
     };
@@ -167,7 +160,7 @@ class Planner {
   }
 
   const std::vector<ExportBuilding>& buildings_;
-  std::vector<Box> boxes_;        // of the coarsest layers, world
+  std::vector<Box> boxes_;        // of the coarsest levels, world
   std::vector<StandIn> singles_;  // one a building
   TilePlan plan_;
 };

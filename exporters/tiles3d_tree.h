@@ -10,11 +10,11 @@ namespace colod {
 
 /// One feature of a tile's content.
 struct TilePart {
-  std::vector<int> buildings;         ///< rising; one, unless a stand-in covers several
-  int layer = -1;                     ///< −1: a stand-in, coarser than layer 0
-  const PolygonMesh* mesh = nullptr;  ///< about `origin`
-  Vec3 origin = Vec3::Zero();         ///< world
-  double error = 0;                   ///< metres, measured
+  std::vector<int> buildings;          ///< rising; one, unless a stand-in covers several
+  const ExportLevel* level = nullptr;  ///< null: a stand-in, coarser than layer 0
+  const PolygonMesh* mesh = nullptr;   ///< about `origin`
+  Vec3 origin = Vec3::Zero();          ///< world
+  double deviation = 0;                ///< metres, measured
 };
 
 struct PlannedTile {
@@ -32,11 +32,12 @@ struct TilePlan {
 };
 
 /// From the root down: stand-ins, each tile's lighter than those of its children together; below
-/// them groups of up to 16 buildings in their coarsest layers, and below a group one chain of finer
-/// layers a building, so that REPLACE never waits for more than 16. Groups part by medians along
-/// the longer side and then across: every inner tile has four children. Subtrees of up to 256
-/// buildings and a kilometre become cells when the whole is larger. `buildings` not empty, each
-/// with a layer; the plan points into them.
+/// them groups of up to 16 buildings in their coarsest levels, and below a group one chain of finer
+/// levels a building, so that REPLACE never waits for more than 16. A building whose coarsest level
+/// may stand much nearer than the group's gets it again at the top of its chain. Groups part by
+/// medians along the longer side and then across: every inner tile has four children. Subtrees of
+/// up to 256 buildings and a kilometre become cells when the whole is larger. `buildings` not
+/// empty, each with a level; the plan points into them.
 TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings);
 
 /// The root shows these instead of its stand-ins.

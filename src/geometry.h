@@ -45,6 +45,15 @@ struct PointCloud {
   std::vector<Vec3> normals;
 };
 
+/// What a room parted from a building's source.
+struct LeftOut {
+  enum class Reason { kGround, kFloater };
+  Reason reason = Reason::kFloater;
+  double area = 0;      ///< m²; 0 for points
+  double share = 0;     ///< 0..1 of the input's area, or of its points
+  double farthest = 0;  ///< metres, of its vertices from what was kept
+};
+
 /// One building as it was read. Exactly one of `mesh` and `cloud` is non-empty.
 struct Source {
   std::string name;  ///< unique within a scene, safe as a file name
@@ -54,6 +63,7 @@ struct Source {
   std::vector<int> face_object;  ///< per face of `mesh`: the file's object number (OBJ group, PLY
                                  ///< property `object`); empty: none
   std::vector<std::string> warnings;  ///< what the reader mended or doubts, one line each
+  std::vector<LeftOut> left_out;      ///< what is no longer in it
   double read_seconds = 0;            ///< wall clock that reading its file took
 
   bool is_mesh() const { return !mesh.faces.empty(); }

@@ -13,6 +13,8 @@
 #include <functional>
 #include <limits>
 
+#include "left_out.h"
+
 namespace colod {
 namespace {
 
@@ -296,7 +298,6 @@ Source separate_ground(Source source) {
   if (site.is_building.empty()) return source;
   const std::vector<char> is_near = widened(site.raster, site.is_building);
   std::vector<char> is_kept(mesh.faces.size(), 0);
-  double left_out = 0;
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const Face& f = mesh.faces[i];
     const Vec3 center = (mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3;
@@ -305,14 +306,17 @@ Source separate_ground(Source source) {
     const int c = site.raster.cell_of(center);
     const bool is_level = std::abs(cross.z()) > kGroundNormal * cross.norm();
     is_kept[i] = is_near[c] && !(is_level && center.z() < site.ground[c] + kGroundLayer);
-    if (!is_kept[i]) left_out += 0.5 * cross.norm();
   }
   if (std::none_of(is_kept.begin(), is_kept.end(), [](char k) { return k; })) return source;
   Source building = keep_faces(source, is_kept);
+  std::vector<char> is_left_out(is_kept.size());
+  for (std::size_t i = 0; i < is_kept.size(); ++i) is_left_out[i] = !is_kept[i];
+  building.left_out.push_back(
+      measure_left_out(source, is_left_out, LeftOut::Reason::kGround, source.left_out));
   char text[160];
   std::snprintf(text, sizeof text,
                 "stands on its own ground: %.0f m2 of terrain and %d things on it are left out",
-                left_out, site.things);
+                building.left_out.back().area, site.things);
   building.warnings.push_back(text);
   return building;
 }

@@ -42,13 +42,16 @@ double uniform(std::uint64_t seed, std::uint64_t index) {
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/// The finite faces with an area, and the vertices that they use.
-Mesh usable_part(const Mesh& mesh, const char* name) {
+/// The finite faces with an area, and the vertices that they use; `original`, when asked for,
+/// receives their numbers in the mesh.
+Mesh usable_part(const Mesh& mesh, const char* name, std::vector<std::size_t>* original = nullptr) {
   Mesh part;
   std::vector<int> index(mesh.vertices.size(), -1);
-  for (const Face& f : mesh.faces) {
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Face& f = mesh.faces[i];
     const double area = face_area(mesh, f);
     if (!(area > 0) || !std::isfinite(area)) continue;
+    if (original) original->push_back(i);
     Face g;
     for (int k = 0; k < 3; ++k) {
       if (index[f[k]] < 0) {
@@ -64,46 +67,95 @@ Mesh usable_part(const Mesh& mesh, const char* name) {
   return part;
 }
 
-PointCloud usable_part(const PointCloud& cloud, const char* name) {
+PointCloud usable_part(const PointCloud& cloud, const char* name,
+                       std::vector<std::size_t>* original) {
   PointCloud part;
-  for (const Vec3& p : cloud.points)
-    if (p.allFinite()) part.points.push_back(p);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (cloud.points[i].allFinite()) part.points.push_back(cloud.points[i]), original->push_back(i);
   if (part.points.empty()) throw Error(Stage::kInput, name, "no finite point or face to measure");
   return part;
+}
+
+/// The flags of the items that are usable; none where there are none.
+std::vector<char> picked(const std::vector<char>& flags, const std::vector<std::size_t>& items) {
+  std::vector<char> out;
+  if (flags.empty()) return out;
+  for (const std::size_t i : items) out.push_back(flags[i]);
+  return out;
 }
 
 /// What a side's distances are taken at: area samples first, then vertices.
 struct Probes {
   std::vector<Vec3> points;
   std::size_t samples = 0;
+  std::vector<char> is_left_out;  ///< per point; empty: none
 };
 
-/// Sample i falls in the i-th of n equal shares of the area, taken in order of faces.
-Probes sample_surface(const Mesh& mesh, const DistanceOptions& options) {
+/// A vertex is left out with all its faces.
+void add_vertices(const Mesh& mesh, const std::vector<char>& is_left_out, Probes& probes) {
+  probes.points.insert(probes.points.end(), mesh.vertices.begin(), mesh.vertices.end());
+  if (is_left_out.empty()) return;
+  probes.is_left_out.resize(probes.points.size(), 1);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const int v : mesh.faces[f]) probes.is_left_out[probes.samples + v] &= is_left_out[f];
+}
+
+/// Sample i falls in the i-th of n equal shares of the area, taken in order of faces. `is_left_out`
+/// is per face or empty.
+Probes sample_surface(const Mesh& mesh, const DistanceOptions& options,
+                      const std::vector<char>& is_left_out = {}) {
   std::vector<double> area_until;
   double total = 0;
   for (const Face& f : mesh.faces) area_until.push_back(total += face_area(mesh, f));
   Probes probes;
   probes.samples = static_cast<std::size_t>(std::max(options.samples, 1));
   probes.points.resize(probes.samples);
+  if (!is_left_out.empty()) probes.is_left_out.resize(probes.samples);
   const auto place = [&](std::size_t i) {
     const double share = (i + uniform(options.seed, 3 * i)) / probes.samples * total;
     const auto found = std::upper_bound(area_until.begin(), area_until.end(), share);
     const std::size_t last = mesh.faces.size() - 1;
-    const Face& f = mesh.faces[std::min<std::size_t>(found - area_until.begin(), last)];
+    const std::size_t face = std::min<std::size_t>(found - area_until.begin(), last);
+    const Face& f = mesh.faces[face];
+    if (!is_left_out.empty()) probes.is_left_out[i] = is_left_out[face];
     const double r = std::sqrt(uniform(options.seed, 3 * i + 1));
     const double t = uniform(options.seed, 3 * i + 2);
     const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
     probes.points[i] = a + r * (1 - t) * (b - a) + r * t * (c - a);
   };
   parallel_for(probes.samples, place, kGrain);
-  probes.points.insert(probes.points.end(), mesh.vertices.begin(), mesh.vertices.end());
+  add_vertices(mesh, is_left_out, probes);
   return probes;
 }
 
 struct OneSided {
   double max = 0, mean = 0, rms = 0;
+  Spread taken;
 };
+
+/// Of the distances at the probes that are not left out; all zero where every one is.
+Spread spread_of(const Probes& probes, const std::vector<double>& distances) {
+  Spread spread;
+  std::vector<double> taken;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (!probes.is_left_out.empty() && probes.is_left_out[i]) continue;
+    spread.max = std::max(spread.max, distances[i]);
+    if (i >= probes.samples) continue;
+    taken.push_back(distances[i]);
+    spread.mean += distances[i];
+  }
+  if (taken.empty()) return spread;
+  spread.mean /= static_cast<double>(taken.size());
+  const auto at = [&](double share) {
+    const auto place =
+        taken.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(taken.size() - 1));
+    std::nth_element(taken.begin(), place, taken.end());
+    return *place;
+  };
+  spread.p95 = at(0.95);
+  spread.p99 = at(0.99);
+  return spread;
+}
 
 /// `distance` is given a point and an upper bound of the result, from the probe before: neighbours
 /// in the list are mostly neighbours in space.
@@ -127,6 +179,7 @@ OneSided measure(const Probes& probes, const Distance& distance) {
   }
   side.mean /= static_cast<double>(probes.samples);
   side.rms = std::sqrt(squares / static_cast<double>(probes.samples));
+  side.taken = spread_of(probes, distances);
   return side;
 }
 
@@ -147,6 +200,7 @@ OneSided measure_to_cloud(const Probes& probes, const PointTree& target) {
 Distances combine(const OneSided& a_to_b, const OneSided& b_to_a, const Box& box_a) {
   Distances d;
   d.a_to_b = a_to_b.max, d.b_to_a = b_to_a.max;
+  d.taken = a_to_b.taken;
   d.mean_a_to_b = a_to_b.mean, d.mean_b_to_a = b_to_a.mean;
   d.rms_a_to_b = a_to_b.rms, d.rms_b_to_a = b_to_a.rms;
   const double diagonal = box_a.diagonal();
@@ -164,15 +218,21 @@ struct DistanceGauge::Impl {
   Points points{probes.points};
   std::unique_ptr<PointTree> cloud;
 
-  Impl(const Mesh& a, const DistanceOptions& o) : options(o) {
-    const Mesh from = usable_part(a, "first mesh");
+  Impl(const Mesh& a, const DistanceOptions& o, const std::vector<char>& is_left_out = {})
+      : options(o) {
+    std::vector<std::size_t> original;
+    const Mesh from = usable_part(a, "first mesh", &original);
     box = bounding_box(from.vertices);
-    probes = sample_surface(from, options);
+    probes = sample_surface(from, options, picked(is_left_out, original));
     mesh = std::make_unique<RayScene>(from);
   }
-  Impl(const PointCloud& a, const std::string& name, const DistanceOptions& o) : options(o) {
-    probes.points = usable_part(a, name.empty() ? "source" : name.c_str()).points;
+  Impl(const PointCloud& a, const std::string& name, const DistanceOptions& o,
+       const std::vector<char>& is_left_out)
+      : options(o) {
+    std::vector<std::size_t> original;
+    probes.points = usable_part(a, name.empty() ? "source" : name.c_str(), &original).points;
     probes.samples = probes.points.size();
+    probes.is_left_out = picked(is_left_out, original);
     box = bounding_box(probes.points);
     cloud = std::make_unique<PointTree>(3, points);
     cloud->buildIndex();
@@ -181,9 +241,10 @@ struct DistanceGauge::Impl {
 
 DistanceGauge::DistanceGauge(const Mesh& a, const DistanceOptions& options)
     : impl_(std::make_unique<Impl>(a, options)) {}
-DistanceGauge::DistanceGauge(const Source& a, const DistanceOptions& options)
-    : impl_(a.is_mesh() ? std::make_unique<Impl>(a.mesh, options)
-                        : std::make_unique<Impl>(a.cloud, a.name, options)) {}
+DistanceGauge::DistanceGauge(const Source& a, const DistanceOptions& options,
+                             const std::vector<char>& is_left_out)
+    : impl_(a.is_mesh() ? std::make_unique<Impl>(a.mesh, options, is_left_out)
+                        : std::make_unique<Impl>(a.cloud, a.name, options, is_left_out)) {}
 DistanceGauge::~DistanceGauge() = default;
 
 Distances DistanceGauge::measure_to(const Mesh& b) const {

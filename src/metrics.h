@@ -45,11 +45,17 @@ struct DistanceOptions {
   std::uint64_t seed = 1;
 };
 
+/// Distances over an area, metres.
+struct Spread {
+  double mean = 0, p95 = 0, p99 = 0, max = 0;  ///< p95: what 95 % of the area does not exceed
+};
+
 struct Distances {
   double a_to_b = 0, b_to_a = 0;            ///< one-sided maxima, metres (sampled Hausdorff)
   double relative = 0;                      ///< max of both / diagonal of a's bounding box
   double mean_a_to_b = 0, mean_b_to_a = 0;  ///< metres
   double rms_a_to_b = 0, rms_b_to_a = 0;    ///< metres
+  Spread taken;  ///< a → b, of what is not left out of a; all of it unless the gauge is told so
 };
 
 /// Measures one mesh or source (a) against many meshes: its samples and its search tree are made
@@ -60,7 +66,9 @@ struct Distances {
 class DistanceGauge {
  public:
   explicit DistanceGauge(const Mesh& a, const DistanceOptions& options = {});
-  explicit DistanceGauge(const Source& a, const DistanceOptions& options = {});
+  /// `is_left_out`: per face or point of a, what was parted from the building; empty: nothing.
+  explicit DistanceGauge(const Source& a, const DistanceOptions& options = {},
+                         const std::vector<char>& is_left_out = {});
   ~DistanceGauge();
 
   Distances measure_to(const Mesh& b) const;

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "ground.h"
+#include "left_out.h"
 #include "parallel.h"
 #include "stopwatch.h"
 
@@ -129,7 +130,49 @@ void measure(const DistanceGauge& source, Layer& layer) {
   layer.distances = source.measure_to(layer.mesh.mesh());
   layer.validity = check_validity(layer.mesh.mesh());
   layer.validity.polygons = static_cast<int>(layer.mesh.facets.size());
-  layer.geometric_error = layer.distances.a_to_b;
+}
+
+/// Layers that did not fail, each with its sight.
+void look_at_layers(Building& b) {
+  std::vector<Mesh> meshes;
+  std::vector<Layer*> shown;
+  for (Layer& layer : b.layers)
+    if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
+  std::vector<LayerSight> sights = measure_sights(meshes);
+  for (std::size_t i = 0; i < shown.size(); ++i) shown[i]->sight = std::move(sights[i]);
+}
+
+std::vector<char> floaters(const Planes& planes) {
+  std::vector<char> is_floater;
+  for (const int plane : planes.plane_of_item) is_floater.push_back(plane == kFloater);
+  if (std::none_of(is_floater.begin(), is_floater.end(), [](char c) { return c; }))
+    is_floater.clear();
+  return is_floater;
+}
+
+/// One warning for each layer that most buildings have nothing for.
+std::vector<std::string> idle_layers(const std::vector<BuildingSights>& buildings, int layers) {
+  std::vector<std::size_t> shown(static_cast<std::size_t>(layers), 0), alike = shown;
+  for (const BuildingSights& b : buildings)
+    for (std::size_t i = 0; i + 1 < b.layers.size(); ++i)
+      ++shown[b.layers[i]], alike[b.layers[i]] += b.sights[i].is_like_finer;
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    if (2 * alike[k] > shown[k])
+      warnings.push_back("layers " + std::to_string(k) + " and " + std::to_string(k + 1) +
+                         " are alike in " + std::to_string(alike[k]) + " of " +
+                         std::to_string(shown[k]) +
+                         " buildings, which have one level for both; --layers " +
+                         std::to_string(std::max(1, layers - 1)) +
+                         " asks for fewer, --layering size and --beta part them elsewhere");
+  return warnings;
+}
+
+BuildingSights sights_of(const Building& b) {
+  BuildingSights out;
+  for (const Layer& layer : b.layers)
+    if (layer.failure.empty()) out.layers.push_back(layer.layer), out.sights.push_back(layer.sight);
+  return out;
 }
 
 /// Where the buildings of each file stand in the scene, which is sorted by name.
@@ -178,6 +221,10 @@ Building segment_building(Turn turn, const Options& options) {
     b.source = localize(source, b.frame);
     if (!is_paper(options)) b.source = separate_ground(std::move(b.source));
     find_segments(b, options);
+    b.left_out = b.source.left_out;
+    if (const std::vector<char> parted = floaters(b.planes); !parted.empty())
+      b.left_out.push_back(
+          measure_left_out(b.source, parted, LeftOut::Reason::kFloater, b.left_out));
   } catch (const Error& e) {
     b.failure = e.what();
   } catch (const std::exception& e) {  // a library gave up: this building's problem only
@@ -244,16 +291,36 @@ void mesh_building(Building& b, const Options& options) {
     }
     keep_chain_sound(b, options);
     Stopwatch watch(b.timings.measure);
-    const DistanceGauge source(b.source);
+    const DistanceGauge source(b.source, {}, floaters(b.planes));
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, layer);
-    for (std::size_t k = b.layers.size() - 1; k-- > 0;)
-      b.layers[k].geometric_error =
-          std::max(b.layers[k].geometric_error, b.layers[k + 1].geometric_error);
+    look_at_layers(b);
     for (Layer& layer : b.layers) unturn(layer.mesh, b.frame);
   } catch (const std::exception& e) {
     b.layers.clear();
     b.failure = b.source.name + ": " + e.what();
+  }
+}
+
+void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
+                     const std::vector<BuildingSights>& prior) {
+  std::vector<BuildingSights> own;
+  for (const Building& b : scene.buildings) own.push_back(sights_of(b));
+  Switching& switching = scene.switching;
+  switching.options = options;
+  switching.is_from_prior = !prior.empty();
+  switching.layers = prior.empty() ? plan_scene_switches(own, layers, options)
+                                   : plan_scene_switches(prior, layers, options, own);
+  switching.warnings = idle_layers(own, layers);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::vector<double> gsds = own_gsds(own[i], options);
+    std::size_t next = 0;
+    for (Layer& layer : scene.buildings[i].layers) {
+      if (!layer.failure.empty()) continue;
+      layer.own_gsd = layer.gsd = gsds[next++];
+      if (options.scope == SwitchScope::kScene && next < gsds.size())
+        layer.gsd = switching.layers[layer.layer].gsd;
+    }
   }
 }
 

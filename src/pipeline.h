@@ -16,6 +16,7 @@
 #include "options.h"
 #include "segments.h"
 #include "selection.h"
+#include "switching.h"
 
 namespace colod {
 
@@ -26,8 +27,11 @@ struct Layer {
   int segments = 0;     ///< on layers ≤ this one
   Validity validity;    ///< of the mesh as written (doubles), self-intersections included
   Distances distances;  ///< source against the layer
-  double geometric_error = 0;  ///< metres, one-sided Hausdorff, never less than a finer layer's
-  std::string failure;         ///< why there is no mesh; empty: there is one
+  LayerSight sight;     ///< against the finest layer, for switching
+  double own_gsd = 0;  ///< metres a pixel: where the layer may stand by this building's measure …
+  double gsd = 0;      ///< … and where it does (set by decide_switches)
+  std::size_t bytes = 0;  ///< of its mesh as the building's GLB packs it; 0: none written
+  std::string failure;    ///< why there is no mesh; empty: there is one
 };
 
 /// Seconds of wall clock per stage; buildings overlap when several threads run.
@@ -54,10 +58,19 @@ struct Building {
   std::vector<int> layer_of_segment;    ///< 0..l_n − 1
   std::vector<Layer> layers;            ///< l_n of them unless the building failed
   Timings timings;
+  std::vector<LeftOut> left_out;  ///< of the source, and why
   std::vector<std::string> warnings;
   std::string failure;  ///< why the building has no layer at all; empty: it has
 
   bool has_failed() const;
+};
+
+/// When layers switch, and how that was decided.
+struct Switching {
+  SwitchOptions options;
+  std::vector<SceneSwitch> layers;    ///< per layer: the scene's g
+  std::vector<std::string> warnings;  ///< layers that hardly any building has something for
+  bool is_from_prior = false;         ///< that of another scene, whose buildings counted
 };
 
 struct Scene {
@@ -65,6 +78,7 @@ struct Scene {
   std::vector<ReadFailure> failures;  ///< inputs that could not be read
   Selection selection;
   Clustering clustering;
+  Switching switching;
   double coanalysis_seconds = 0;
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
@@ -117,6 +131,11 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior = nu
 
 /// Rooms 8 and 9 and the measures for one building.
 void mesh_building(Building& building, const Options& options);
+
+/// After the last building: sets own_gsd and gsd of all layers, and the scene's switching. With a
+/// prior that has sights, its buildings decide the scene's g. Layers are numbered below `layers`.
+void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
+                     const std::vector<BuildingSights>& prior = {});
 
 /// Holds the layers of a building against a ground truth; `source` is its own in its local frame,
 /// with object numbers. Empty where the truth does not name it or a layer failed. Throws

@@ -201,6 +201,8 @@ Planes detect_planes(const Source& source, const PlaneOptions& options) {
   result.box = used_box(items);
   if (!options.is_paper && !items.is_mesh()) lower_to_foot(items, result.box);
   result.plane_of_item.assign(items.size(), -1);
+  for (int i = 0; i < items.size(); ++i)
+    if (items.is_floater[i]) result.plane_of_item[i] = kFloater;
   for (std::size_t p = 0; p < result.planes.size(); ++p)
     for (const int i : result.planes[p].items) result.plane_of_item[i] = static_cast<int>(p);
   for (const Plane& p : result.planes) result.total_area += items.is_mesh() ? 0 : p.area;

@@ -14,6 +14,9 @@ constexpr double kLeastDistance = 0.03;
 /// A model has none to spare of so few planes: nothing is merged or left out where it is exact.
 constexpr std::size_t kFewPlanes = 12;
 
+/// In plane_of_item: no part of the building, left out from the start.
+constexpr int kFloater = -2;
+
 struct PlaneOptions {
   bool is_paper = false;  ///< to the letter: CGAL region growing at
                           ///< `distance`/`angle_deg`/`min_points`, nothing else
@@ -25,7 +28,7 @@ struct PlaneOptions {
 
 struct Planes {
   std::vector<Plane> planes;       ///< largest area first, ties by centroid
-  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none
+  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none, kFloater
   Box box;                         ///< of the source without its floaters
   double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
   double distance = 0;    ///< metres: the region growing distance used; kLeastDistance or less

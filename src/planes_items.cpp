@@ -245,6 +245,7 @@ Items collect_items(const Source& source) {
     add_faces(items);
   else
     add_points(items);
+  items.is_floater.assign(items.is_used.size(), 0);
   return items;
 }
 
@@ -261,7 +262,8 @@ void drop_floaters(Items& items, std::vector<std::string>& warnings) {
   const auto dropped = std::count(is_kept.begin(), is_kept.end(), 0);
   if (dropped == 0) return;
   for (int i = 0; i < items.size(); ++i)
-    if (components.of_item[i] >= 0 && !is_kept[components.of_item[i]]) items.is_used[i] = 0;
+    if (components.of_item[i] >= 0 && !is_kept[components.of_item[i]])
+      items.is_used[i] = 0, items.is_floater[i] = 1;
   warnings.push_back("dropped " + std::to_string(dropped) +
                      " small components far from the building");
 }

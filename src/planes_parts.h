@@ -18,6 +18,7 @@ struct Items {
   std::vector<Vec3> center;      ///< face centroid or point
   std::vector<Vec3> normal;      ///< unit; zero where unknown
   std::vector<double> area;      ///< m²; of a point: what its neighbours leave it
+  std::vector<char> is_floater;  ///< parted from the building; not used either
   std::vector<char> is_used;     ///< no floater, not degenerate, finite
   std::vector<int> first;        ///< neighbours of i: neighbor[first[i] .. first[i + 1])
   std::vector<int> neighbor;     ///< across an edge, or among the nearest points

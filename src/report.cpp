@@ -2,7 +2,12 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "../exporters/exporter.h"
+#include "left_out.h"
 
 namespace colod {
 namespace {
@@ -42,7 +47,13 @@ Json layer_json(const Layer& layer) {
   json["hausdorff"] = layer.distances.a_to_b;
   json["hausdorff_relative"] = layer.distances.relative;
   json["mean_distance"] = layer.distances.mean_a_to_b;
-  json["geometric_error"] = layer.geometric_error;
+  const Spread& d = layer.distances.taken;
+  json["distance"] = {{"mean", d.mean}, {"p95", d.p95}, {"p99", d.p99}, {"max", d.max}};
+  json["deviation"] = layer.sight.deviation;
+  json["gsd"] = layer.gsd;
+  json["own_gsd"] = layer.own_gsd;
+  json["like_finer"] = layer.sight.is_like_finer;
+  if (layer.bytes > 0) json["bytes"] = layer.bytes;
   return json;
 }
 
@@ -56,6 +67,12 @@ Json building_json(const Building& b, bool has_prior) {
             {"prior", has_prior},
             {"diagonal", b.counts.diagonal},
             {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+  json["left_out"] = Json::array();
+  for (const LeftOut& l : b.left_out)
+    json["left_out"].push_back({{"reason", to_string(l.reason)},
+                                {"area", l.area},
+                                {"share", l.share},
+                                {"farthest", l.farthest}});
   json["layers"] = Json::array();
   for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
   json["timings"] = {{"read", b.timings.read},
@@ -69,6 +86,34 @@ Json building_json(const Building& b, bool has_prior) {
                      {"export", b.timings.export_}};
   json["warnings"] = b.warnings;
   if (!b.failure.empty()) json["failure"] = b.failure;
+  return json;
+}
+
+Json switching_json(const Switching& switching) {
+  const SwitchFacts viewport;
+  const double view = 2 * std::tan(viewport.fov_y_deg * std::numbers::pi / 360);
+  const SwitchOptions& o = switching.options;
+  Json json = {{"measure", to_string(o.measure)},
+               {"scope", to_string(o.scope)},
+               {"visual_error", o.visual_error},
+               {"pixel_error", o.pixel_error},
+               {"share", o.share},
+               {"viewport_height", viewport.viewport_height},
+               {"fov_y_deg", viewport.fov_y_deg},
+               {"from_prior", switching.is_from_prior},
+               {"warnings", switching.warnings},
+               {"layers", Json::array()}};
+  for (std::size_t k = 0; k < switching.layers.size(); ++k) {
+    const SceneSwitch& s = switching.layers[k];
+    json["layers"].push_back({{"layer", k},
+                              {"gsd", s.gsd},
+                              {"switch_distance", s.gsd * viewport.viewport_height / view},
+                              {"buildings", s.buildings},
+                              {"too_coarse", s.too_coarse},
+                              {"too_coarse_factor", s.coarse_factor},
+                              {"too_fine", s.too_fine},
+                              {"too_fine_factor", s.fine_factor}});
+  }
   return json;
 }
 
@@ -111,6 +156,7 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
       {"rays", rays},
       {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
   json["coanalysis"] = coanalysis_json(scene);
+  json["switching"] = switching_json(scene.switching);
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["buildings"] = Json::array();

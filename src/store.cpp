@@ -16,14 +16,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 4;  // PRAGMA user_version
+constexpr int kFormat = 5;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT NOT NULL, path TEXT NOT NULL,
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
-  rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL);
+  rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL);
 CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
@@ -34,7 +34,7 @@ CREATE TABLE segment(building TEXT NOT NULL REFERENCES building(name) ON DELETE 
 CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
-  segments INTEGER, geometric_error REAL, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
+  segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
   facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, PRIMARY KEY(building, layer)) WITHOUT ROWID;
 )sql";
 
@@ -110,8 +110,13 @@ Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
   version.step();
   const std::int64_t found = version.integer();
   if (found == kFormat) return;
-  if (found != 0 || impl_->has_row("SELECT 1 FROM sqlite_master WHERE name <> ?1", ""))
-    throw Error(Stage::kInput, path, "not a scene file of this version of colod");
+  if (found != 0)
+    throw Error(Stage::kInput, path,
+                "is a scene file of format " + std::to_string(found) +
+                    ", this colod reads and writes " + std::to_string(kFormat) +
+                    ": run colod segment again into a new file");
+  if (impl_->has_row("SELECT 1 FROM sqlite_master WHERE name <> ?1", ""))
+    throw Error(Stage::kInput, path, "is a database, but not a scene file of colod");
   impl_->transaction([&] {
     impl_->execute(kSchema, Stage::kOutput);
     impl_->execute(("PRAGMA user_version = " + std::to_string(kFormat)).c_str(), Stage::kOutput);
@@ -221,6 +226,22 @@ Building Store::building(const std::string& name) const {
   impl_->get_layers(b);
   b.counts = count(b);
   return b;
+}
+
+std::vector<BuildingSights> Store::sights() const {
+  std::vector<BuildingSights> result;
+  Statement s = impl_->read(
+      "SELECT building, layer, is_like_finer, deviation, profile FROM layer WHERE failure = '' "
+      "ORDER BY building, layer");
+  std::string last;
+  while (s.step()) {
+    const std::string name = s.text();
+    if (result.empty() || name != last) result.emplace_back();
+    last = name;
+    result.back().layers.push_back(static_cast<int>(s.integer()));
+    result.back().sights.push_back(read_sight(s));
+  }
+  return result;
 }
 
 Prior Store::prior() const {

@@ -49,6 +49,9 @@ class Store {
   /// All that is there of a building; timings are not kept.
   Building building(const std::string& name) const;
 
+  /// What the buildings with meshes bring to the decision when layers switch.
+  std::vector<BuildingSights> sights() const;
+
   /// What the analysed scene learnt. Throws Error{kInput} when it is not analysed.
   Prior prior() const;
 

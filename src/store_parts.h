@@ -109,6 +109,9 @@ struct Store::Impl {
   void get_layers(Building& b) const;
 };
 
+/// The columns is_like_finer, deviation, profile.
+LayerSight read_sight(Statement& s);
+
 /// The columns form, volume, area, extent, is_flat, eigenvalues, d2.
 Descriptor read_descriptor(Statement& s);
 

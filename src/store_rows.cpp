@@ -14,8 +14,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Validity, vertices, faces, polyg
                                                 nonmanifold_vertices, self_intersections,
                                                 degenerate_faces, components, enclosed_components,
                                                 volume, area)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spread, mean, p95, p99, max)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Distances, a_to_b, b_to_a, relative, mean_a_to_b, mean_b_to_a,
-                                   rms_a_to_b, rms_b_to_a)
+                                   rms_a_to_b, rms_b_to_a, taken)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOut, reason, area, share, farthest)
 
 namespace {
 
@@ -96,10 +98,18 @@ Descriptor read_descriptor(Statement& s) {
   return d;
 }
 
+LayerSight read_sight(Statement& s) {
+  LayerSight sight;
+  sight.is_like_finer = s.integer() != 0;
+  sight.deviation = s.real();
+  sight.profile = s.array<VisibleStep>();
+  return sight;
+}
+
 void Store::Impl::put_building(const Building& b, int order, const std::string& key) const {
   const std::vector<Vec3> box{b.planes.box.min, b.planes.box.max};
   std::vector<std::string> own_warnings = b.warnings;
-  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(order)
       .bind(key)
@@ -119,6 +129,7 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(static_cast<std::int64_t>(b.segments.rays))
       .bind(b.failure)
       .bind(Json(own_warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
+      .bind(Json(b.left_out).dump())
       .run();
 }
 
@@ -178,11 +189,13 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
     facets.push_back({f.normal, f.plane, static_cast<std::int32_t>(f.rings.size())});
     rings.insert(rings.end(), f.rings.begin(), f.rings.end());
   }
-  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(layer.layer)
       .bind(layer.segments)
-      .bind(layer.geometric_error)
+      .bind(layer.sight.is_like_finer ? 1 : 0)
+      .bind(layer.sight.deviation)
+      .bind(layer.sight.profile)
       .bind(layer.failure)
       .bind(Json(layer.validity).dump())
       .bind(Json(layer.distances).dump())
@@ -197,7 +210,8 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
 void Store::Impl::get_building(Building& b) const {
   Statement s = read(
       "SELECT path, origin_x, origin_y, origin_z, yaw, planes_distance, total_area, box, vertices, "
-      "faces, points, normals, plane_of_item, rays, failure, warnings FROM building WHERE name = "
+      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out FROM building "
+      "WHERE name = "
       "?1");
   if (!s.bind(b.source.name).step())
     throw Error(Stage::kInput, path, "holds no building '" + b.source.name + "'");
@@ -216,6 +230,7 @@ void Store::Impl::get_building(Building& b) const {
   b.segments.rays = static_cast<std::uint64_t>(s.integer());
   b.failure = s.text();
   read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
+  read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
   check_range(b.source.mesh.faces, b.source.mesh.vertices.size(), path);
   if (!b.source.cloud.normals.empty() &&
       b.source.cloud.normals.size() != b.source.cloud.points.size())
@@ -286,14 +301,15 @@ void Store::Impl::get_segments(Building& b) const {
 
 void Store::Impl::get_layers(Building& b) const {
   Statement s = read(
-      "SELECT layer, segments, geometric_error, failure, validity, distances, vertices, facets, "
+      "SELECT layer, segments, is_like_finer, deviation, profile, failure, validity, distances, "
+      "vertices, facets, "
       "rings, triangles, facet_of_triangle FROM layer WHERE building = ?1 ORDER BY layer");
   s.bind(b.source.name);
   while (s.step()) {
     Layer layer;
     layer.layer = static_cast<int>(s.integer());
     layer.segments = static_cast<int>(s.integer());
-    layer.geometric_error = s.real();
+    layer.sight = read_sight(s);
     layer.failure = s.text();
     read_json(s.text(), path, "measures", [&](const Json& json) { json.get_to(layer.validity); });
     read_json(s.text(), path, "measures", [&](const Json& json) { json.get_to(layer.distances); });

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <functional>
 
-#include "../exporters/deviation.h"
 #include "../exporters/engine.h"
 #include "../exporters/files.h"
 #include "../exporters/glb.h"
@@ -47,6 +46,9 @@ std::string packed(const Json& json, std::string binary) {
   return glb + binary;
 }
 
+/// What street() switches by.
+const SwitchFacts kScene{.layer_gsd = {0.6, 0.3, 0}};
+
 using Change = std::function<void(Json&, std::string&)>;
 
 /// Codes found in a GLB after its JSON and binary were changed.
@@ -59,20 +61,15 @@ Codes after(const std::string& glb, const Change& change) {
   return codes_of(findings);
 }
 
-/// A street whose errors are those of its meshes.
-std::vector<ExportBuilding> measured_street(int n) {
-  std::vector<ExportBuilding> buildings = street(n);
-  for (ExportBuilding& b : buildings) measure_visible_errors(b);
-  return buildings;
-}
-
 /// A tileset on disk that goes away with the test.
 class Tileset {
  public:
   Tileset() : folder_(fs::temp_directory_path() / ("colod_check_" + std::to_string(getpid()))) {
-    for (const Encoded& file : encode_tileset(measured_street(20)))
+    for (const Encoded& file : encode_tileset(street(20), {.switching = kScene}))
       write_file(folder_.string(), file);
-    for (const ExportBuilding& b : street(3)) write_file(folder_.string(), encode_building_glb(b));
+    for (const ExportBuilding& b : street(3))
+      write_file(folder_.string(), encode_building_glb(b, {.switching = kScene}));
+    write_file(folder_.string(), encode_lods_json(street(3), {.switching = kScene}));
     json = Json::parse(slurp("tileset.json"));
   }
   ~Tileset() { fs::remove_all(folder_); }
@@ -121,7 +118,7 @@ TEST_CASE("what colod writes has no fault, in any compression") {
   for (const Compression c : {Compression::kNone, Compression::kDraco, Compression::kMeshopt}) {
     std::vector<Finding> findings;
     check_glb(encode_building_glb(street(1)[0], {.compression = c}).bytes, "a.glb", findings);
-    for (const Encoded& file : encode_tileset(measured_street(2), {.compression = c}))
+    for (const Encoded& file : encode_tileset(street(2), {.compression = c}))
       if (file.path.ends_with(".glb")) check_glb(file.bytes, file.path, findings);
     CHECK(codes_of(findings) == Codes{});
   }
@@ -146,7 +143,7 @@ TEST_CASE("faults of geometric errors") {
     every_tile(tileset.json["root"], [](Json& tile) {
       tile["geometricError"] = 0.1 * tile["geometricError"].get<double>();
     });
-    CHECK(tileset.codes() == Codes{"error-unmeasured"});
+    CHECK(tileset.codes() == Codes{"error-gsd"});
   }
   SECTION("a leaf that is not exact") {
     tileset.leaf()["geometricError"] = 1e-6;
@@ -268,6 +265,55 @@ TEST_CASE("faults of MSFT_lod") {
         }) == Codes{"lod-nodes"});
   CHECK(after(glb, [](Json& json, std::string&) { json["nodes"][1]["name"] = "x"; }) ==
         Codes{"lod-names"});
+}
+
+TEST_CASE("faults of switches") {
+  const std::string glb = encode_building_glb(street(1)[0]).bytes;
+  CHECK(after(glb, [](Json& json, std::string&) {
+          json["nodes"][1]["extras"]["gsd"] = 0.7;
+        }).contains("lod-gsd"));
+  CHECK(after(glb, [](Json& json, std::string&) { json["nodes"][0]["extras"]["gsd"] = 0.1; }) ==
+        Codes{"lod-gsd"});
+  CHECK(after(glb, [](Json& json, std::string&) {
+          Json& coverage = json["nodes"][0]["extras"]["MSFT_screencoverage"];
+          coverage[0] = 1.2 * coverage[0].get<double>();
+        }) == Codes{"lod-coverage"});
+  ExportBuilding twice = street(1)[0];
+  twice.levels[1].mesh = twice.levels[2].mesh;
+  std::vector<Finding> findings;
+  check_glb(encode_building_glb(twice).bytes, "twice.glb", findings);
+  CHECK(codes_of(findings) == Codes{"lod-alike"});
+
+  Tileset tileset;
+  SECTION("a building that switches for itself though the scene is the scope") {
+    ExportBuilding own = street(3)[2];
+    own.levels[0].gsd = 0.7;
+    const Encoded file = encode_building_glb(own, {.switching = kScene});
+    tileset.write(file.path, file.bytes);
+    CHECK(tileset.codes() == Codes{"gsd-differs"});
+  }
+  SECTION("another scene's plan") {
+    tileset.json["asset"]["extras"]["switching"]["layers"][1]["gsd"] = 0.31;
+    CHECK(tileset.codes() == Codes{"gsd-differs"});
+  }
+  SECTION("each building for itself is no fault where it is said") {
+    ExportBuilding own = street(3)[2];
+    own.levels[0].gsd = 0.7;
+    std::vector<Finding> none;
+    check_glb(encode_building_glb(own, {.switching = {.scope = "building", .layer_gsd = {}}}).bytes,
+              "x", none);
+    CHECK(codes_of(none) == Codes{});
+  }
+  SECTION("lods.json") {
+    Json lods = Json::parse(tileset.slurp("engine/lods.json"));
+    Json& levels = lods["buildings"][0]["levels"];
+    levels[1]["switch_distance"] = 1.1 * levels[1]["switch_distance"].get<double>();
+    tileset.write("engine/lods.json", lods.dump());
+    CHECK(tileset.codes() == Codes{"lod-distance"});
+    levels[2]["gsd"] = 0.1;
+    tileset.write("engine/lods.json", lods.dump());
+    CHECK(tileset.codes().contains("lod-gsd"));
+  }
 }
 
 TEST_CASE("faults of plain GLBs") {

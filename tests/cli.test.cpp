@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "meshes.h"
 #include "temporary_folder.h"
@@ -166,7 +167,7 @@ TEST_CASE("info tells what a mesh and a folder of ours hold") {
   REQUIRE(f.colod("build " + house + kSmall + " -o " + (f / "out").string() + " --no-report-html")
               .exit_code == 0);
   CHECK(!fs::exists(f / "out/report.html"));
-  CHECK(nlohmann::json::parse(f.colod("info " + (f / "out").string()).out)["contents"] >= 3);
+  CHECK(nlohmann::json::parse(f.colod("info " + (f / "out").string()).out)["contents"] >= 2);
   CHECK(f.colod("info " + (f / "out/buildings/house.glb").string()).exit_code == 0);
 }
 
@@ -205,21 +206,35 @@ TEST_CASE("an interrupted run leaves whole files only") {
     CHECK(entry.path().string().find(".tmp") == std::string::npos);
 }
 
-TEST_CASE("a building's files are written when it is done, not when all are") {
+TEST_CASE("all buildings of a scene switch alike, or each for itself, as asked") {
   Folder f;
-  for (const int i : {0, 1, 2, 3, 4, 5})
-    f.write("in/h" + std::to_string(i) + ".off", off(test::gable_house(10 + 2 * i, 9, 6, 3 + i)));
-  std::system((std::string(COLOD_BINARY) + " build " + (f / "in").string() + kSmall +
-               "--threads 1 -o " + (f / "out").string() + " & p=$!; for i in $(seq 30000); do " +
-               "ls " + (f / "out").string() + "/buildings/*.glb >/dev/null 2>&1 && break; " +
-               "sleep 0.001; done; kill -9 $p; wait $p 2>/dev/null")
-                  .c_str());
-  std::size_t written = 0;
-  for (const auto& entry : fs::directory_iterator(f / "out/buildings"))
-    written += entry.path().extension() == ".glb";
-  CHECK(written >= 1);
-  CHECK(written < 6);
-  CHECK(!fs::exists(f / "out/report.json"));
+  const std::string assets = std::string(COLOD_SOURCE_DIR) + "/assets/neighbourhood/";
+  const std::string scene_file = (f / "s.colod").string(), out = (f / "out").string();
+  REQUIRE(f.colod("segment " + assets + "house_02.ply " + assets + "house_03.ply " + assets +
+                  "house_04.ply --ns 40 --nr 40 -o " + scene_file)
+              .exit_code == 0);
+  REQUIRE(f.colod("analyze " + scene_file).exit_code == 0);
+  REQUIRE(f.colod("mesh " + scene_file).exit_code == 0);
+  const auto gsds = [&](const std::string& options) {
+    REQUIRE(f.colod("export " + scene_file + " --format glb,3dtiles,engine --no-report-html " +
+                    options + " -o " + out)
+                .exit_code == 0);
+    CHECK(f.colod("info --check " + out).exit_code == 0);
+    std::set<double> found;
+    const auto report = nlohmann::json::parse(slurp(out + "/report.json"));
+    for (const auto& b : report["buildings"]) found.insert(b["layers"][1]["gsd"].get<double>());
+    return found;
+  };
+  const std::set<double> scene = gsds(""), own = gsds("--switch-scope building");
+  REQUIRE(scene.size() == 1);
+  CHECK(own.size() == 3);
+  CHECK(*scene.begin() == *own.rbegin());  // of three buildings nine in ten are all
+  CHECK(*gsds("--switch-share 0.1").begin() == *own.begin());
+  CHECK(*gsds("--visual-error 16").begin() < *scene.begin());
+  CHECK(*gsds("--switch deviation").begin() > *scene.begin());
+  CHECK(gsds("--visual-error 16 --prior " + scene_file) == gsds("--visual-error 16"));
+  CHECK(f.colod("export " + scene_file + " --switch loud -o " + out).exit_code == 2);
+  CHECK(f.colod("export " + scene_file + " --visual-error 0 -o " + out).exit_code == 2);
 }
 
 TEST_CASE("stages refuse what is newer than their input, and what is damaged") {

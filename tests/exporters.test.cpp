@@ -114,7 +114,7 @@ TEST_CASE("a building GLB has its finest mesh on the root and the others in MSFT
   CHECK(glb.json["asset"]["extras"]["origin"][1] == kFar.y());
 }
 
-TEST_CASE("coverage falls strictly from at most 1 to 0 and errors rise with coarseness") {
+TEST_CASE("coverage is the diameter over what a viewport sees at the next level's gsd, then 0") {
   const ExportBuilding house = three_layers("house", kFar);
   const Glb glb = parse_glb(encode_building_glb(house).bytes);
   const std::vector<double> c = glb.json["nodes"][0]["extras"]["MSFT_screencoverage"];
@@ -123,19 +123,39 @@ TEST_CASE("coverage falls strictly from at most 1 to 0 and errors rise with coar
   CHECK(c[0] > c[1]);
   CHECK(c[1] > c[2]);
   CHECK(c[2] == 0);
-  const double diameter = bounding_box(house.layers[2].mesh.vertices).diagonal();
-  const double eps = glb.json["nodes"][1]["extras"]["geometricError"];
-  CHECK(eps >= 0.9);
-  CHECK(eps <= 0.9 + 0.01);
-  CHECK(c[0] == Approx(2 * diameter / (eps * 1080)));
+  const double diameter = bounding_box(house.levels[2].mesh.vertices).diagonal();
+  CHECK(glb.json["nodes"][1]["extras"]["gsd"] == 0.3);
+  CHECK(c[0] == Approx(diameter / (0.3 * 1080)));
+  CHECK(c[1] == Approx(diameter / (0.6 * 1080)));
 }
 
-TEST_CASE("coverage falls strictly even when all errors are nothing") {
+TEST_CASE("coverage falls strictly even when levels switch on one's nose") {
   ExportBuilding house = three_layers("house", kFar);
-  for (ExportLayer& layer : house.layers) layer.geometric_error = 0;
+  house.levels[0].gsd = 2e-4, house.levels[1].gsd = 1e-4;
   const Glb glb = parse_glb(encode_building_glb(house).bytes);
   const std::vector<double> c = glb.json["nodes"][0]["extras"]["MSFT_screencoverage"];
   CHECK((1 >= c[0] && c[0] > c[1] && c[1] > c[2] && c[2] == 0));
+}
+
+TEST_CASE("layers that are alike are one level, and say so") {
+  ExportBuilding house = three_layers("house", kFar);
+  house.levels.erase(house.levels.begin());
+  house.levels[0].layers = {0, 1};
+  const Glb glb = parse_glb(encode_building_glb(house).bytes);
+  REQUIRE(glb.json["nodes"].size() == 2);
+  CHECK(glb.json["nodes"][1]["extras"]["layers"] == std::vector{0, 1});
+  CHECK(glb.json["nodes"][1]["extras"]["layer"] == 1);
+  CHECK(encode_engine_levels(house).size() == 2);
+  const auto lods = nlohmann::json::parse(encode_lods_json({house}).bytes);
+  CHECK(lods["buildings"][0]["levels"][1]["layers"] == std::vector{0, 1});
+}
+
+TEST_CASE("a level's bytes are those of its mesh in the file") {
+  const BuildingGlb glb = encode_building_glb(three_layers("house", kFar));
+  const auto views = parse_glb(glb.bytes).json["bufferViews"];
+  REQUIRE(glb.level_bytes.size() == 3);
+  for (int level = 0; level < 3; ++level)
+    CHECK(glb.level_bytes[level] >= views[level]["byteLength"].get<std::size_t>());
 }
 
 TEST_CASE("accessors say what a Draco decoder finds") {
@@ -174,13 +194,13 @@ TEST_CASE("every level stays within the bound, closed, and lit by its facets' no
   for (int layer = 0; layer < 3; ++layer) {
     const Decoded decoded = decode_mesh(glb, layer);
     std::vector<Vec3> expected;
-    for (const Vec3& p : house.layers[layer].mesh.vertices)
+    for (const Vec3& p : house.levels[layer].mesh.vertices)
       expected.emplace_back(p.x(), p.z(), -p.y());
     CHECK(farthest_vertex(decoded.mesh, expected) <= 0.02);
     CHECK(farthest_vertex({expected, {}}, decoded.mesh.vertices) <= 0.02);
     CHECK(is_watertight(decoded.mesh));
     CHECK(signed_volume(decoded.mesh) ==
-          Approx(signed_volume(house.layers[layer].mesh.mesh())).epsilon(0.02));
+          Approx(signed_volume(house.levels[layer].mesh.mesh())).epsilon(0.02));
     for (const Face& f : decoded.mesh.faces)
       for (const int v : f)
         CHECK(face_cross(decoded.mesh, f).normalized().dot(decoded.normals[v]) > 0.999);
@@ -190,7 +210,7 @@ TEST_CASE("every level stays within the bound, closed, and lit by its facets' no
 TEST_CASE("a wall thinner than the grid makes the grid finer instead of opening the mesh") {
   ExportBuilding house = three_layers("house", kFar);
   const Mesh fin = box_mesh({2, 8.102, 1}, {3, 8.104, 2});
-  house.layers[2].mesh = as_polygons(join(gable_house(12.3, 8.1, 5.7, 3.3), fin));
+  house.levels[2].mesh = as_polygons(join(gable_house(12.3, 8.1, 5.7, 3.3), fin));
   const Glb glb = parse_glb(encode_building_glb(house, {.quantization = 0.05}).bytes);
   CHECK(is_watertight(decode_mesh(glb, 2).mesh));
 }
@@ -199,7 +219,7 @@ TEST_CASE("reading a building GLB gives its finest layer in world coordinates") 
   for (const Compression compression : {Compression::kDraco, Compression::kNone}) {
     const ExportBuilding house = three_layers("house", kFar);
     const Source s = read_back(encode_building_glb(house, {.compression = compression}));
-    Mesh world = house.layers[2].mesh.mesh();
+    Mesh world = house.levels[2].mesh.mesh();
     for (Vec3& p : world.vertices) p += kFar;
     CHECK(farthest_vertex(s.mesh, world.vertices) <= 0.01);
     CHECK(s.mesh.faces.size() == world.faces.size());
@@ -210,27 +230,27 @@ TEST_CASE("reading a building GLB gives its finest layer in world coordinates") 
 
 TEST_CASE("OBJ and PLY give back every double at 10^6 metres") {
   const ExportBuilding house = three_layers("house", kFar);
-  for (const ExportLayer& layer : house.layers)
-    for (const Encoded& file : {encode_obj(house, layer), encode_ply(house, layer)}) {
+  for (const ExportLevel& level : house.levels)
+    for (const Encoded& file : {encode_obj(house, level, 1), encode_ply(house, level, 1)}) {
       const Source s = read_back(file);
-      REQUIRE(s.mesh.vertices.size() == layer.mesh.vertices.size());
+      REQUIRE(s.mesh.vertices.size() == level.mesh.vertices.size());
       for (std::size_t i = 0; i < s.mesh.vertices.size(); ++i)
-        CHECK(s.mesh.vertices[i] == layer.mesh.vertices[i] + kFar);
+        CHECK(s.mesh.vertices[i] == level.mesh.vertices[i] + kFar);
       CHECK(is_watertight(s.mesh));
-      CHECK(signed_volume(s.mesh) == Approx(signed_volume(layer.mesh.mesh())));
+      CHECK(signed_volume(s.mesh) == Approx(signed_volume(level.mesh.mesh())));
     }
 }
 
 TEST_CASE("OBJ writes a convex facet as one polygon, and one with a straight corner as triangles") {
   ExportBuilding house = three_layers("house", kFar);
   const auto faces = [&] {
-    const std::string text = encode_obj(house, house.layers[0]).bytes;
+    const std::string text = encode_obj(house, house.levels[0], 0).bytes;
     int count = 0;
     for (std::size_t at = 0; (at = text.find("\nf ", at)) != text.npos; ++at) ++count;
     return count;
   };
   CHECK(faces() == 6);
-  PolygonMesh& mesh = house.layers[0].mesh;
+  PolygonMesh& mesh = house.levels[0].mesh;
   std::vector<int>& ring = mesh.facets[0].rings[0];
   mesh.vertices.push_back((mesh.vertices[ring[0]] + mesh.vertices[ring[1]]) / 2);
   ring.insert(ring.begin() + 1, static_cast<int>(mesh.vertices.size()) - 1);
@@ -263,13 +283,26 @@ TEST_CASE("no tile has more than 16 children") {
   }
 }
 
-TEST_CASE("a tile's geometric error is k times its content's") {
-  const auto files =
-      encode_tileset({three_layers("house", kFar)}, {.target_sse = 16, .pixel_error = 4});
+TEST_CASE("a tile's geometric error is the target SSE times its content's gsd") {
+  const auto files = encode_tileset({three_layers("house", kFar)}, {.target_sse = 12});
   const auto root = nlohmann::json::parse(files.front().bytes)["root"];
   const auto coarsest = root["children"][0], middle = coarsest["children"][0];
-  CHECK(coarsest["geometricError"].get<double>() == Approx(4 * 2.1).margin(4 * 0.01));
-  CHECK(middle["geometricError"].get<double>() == Approx(4 * 0.9).margin(4 * 0.01));
+  CHECK(coarsest["geometricError"].get<double>() == Approx(12 * 0.6));
+  CHECK(middle["geometricError"].get<double>() == Approx(12 * 0.3));
+}
+
+TEST_CASE("a building that may stay coarse for longer than its group gets a tile for it") {
+  std::vector<ExportBuilding> buildings = {three_layers("a", kFar), three_layers("b", kFar)};
+  buildings[1].levels.erase(buildings[1].levels.begin() + 1);  // {0, 1} and {2}
+  buildings[1].levels[0].layers = {0, 1};
+  buildings[1].levels[0].gsd = 0.3;
+  const auto files = encode_tileset(buildings);
+  const auto group = nlohmann::json::parse(files.front().bytes)["root"]["children"][0];
+  const auto &a = group["children"][0], &b = group["children"][1];
+  CHECK(a["extras"] == nlohmann::json{{"building", "a"}, {"layer", 1}, {"coarsestLayer", 1}});
+  CHECK(b["extras"] == nlohmann::json{{"building", "b"}, {"layer", 1}, {"coarsestLayer", 0}});
+  CHECK(a["geometricError"] == b["geometricError"]);
+  CHECK(b["children"][0]["extras"]["layer"] == 2);
 }
 
 TEST_CASE("feature ids lead from every vertex to its building") {
@@ -283,7 +316,7 @@ TEST_CASE("feature ids lead from every vertex to its building") {
   for (std::size_t i = 0; i < root.features.size(); ++i) {
     const Vec3& p = root.mesh.vertices[i];
     const Vec3 local = Vec3(p.x(), -p.z(), p.y()) + origin - buildings[root.features[i]].origin;
-    CHECK(bounding_box(buildings[root.features[i]].layers[0].mesh.vertices).max.x() + 0.02 >
+    CHECK(bounding_box(buildings[root.features[i]].levels[0].mesh.vertices).max.x() + 0.02 >
           local.x());
     CHECK(local.x() > -0.02);
   }
@@ -318,7 +351,7 @@ TEST_CASE("engine levels are plain, named _LOD<n>, and stand on the ground about
   }
 }
 
-TEST_CASE("lods.json: errors and distances rise, screen sizes fall, files exist") {
+TEST_CASE("lods.json: gsds and distances rise, screen sizes fall, files exist") {
   const ExportBuilding house = three_layers("house", kFar);
   const auto json = nlohmann::json::parse(encode_lods_json({house}).bytes);
   const auto& levels = json["buildings"][0]["levels"];
@@ -326,14 +359,13 @@ TEST_CASE("lods.json: errors and distances rise, screen sizes fall, files exist"
   CHECK(levels[0]["switch_distance"] == 0);
   CHECK(levels[0]["screen_size"] == 1);
   for (std::size_t lod = 0; lod + 1 < 3; ++lod) {
-    CHECK(levels[lod + 1]["error"].get<double>() > levels[lod]["error"].get<double>());
+    CHECK(levels[lod + 1]["gsd"].get<double>() > levels[lod]["gsd"].get<double>());
     CHECK(levels[lod + 1]["switch_distance"].get<double>() >
           levels[lod]["switch_distance"].get<double>());
     CHECK(levels[lod + 1]["screen_size"].get<double>() < levels[lod]["screen_size"].get<double>());
   }
-  const double pixels = levels[1]["error"].get<double>() * 1080 /
-                        (levels[1]["switch_distance"].get<double>() * 2 * std::tan(M_PI / 6));
-  CHECK(pixels == Approx(2));
+  const double seen = levels[1]["switch_distance"].get<double>() * 2 * std::tan(M_PI / 6) / 1080;
+  CHECK(seen == Approx(0.3));
 }
 
 TEST_CASE("a 3tz holds every file, and its index leads to each by the MD5 of its path") {
@@ -363,7 +395,7 @@ TEST_CASE("grids nest and keep the bound") {
 TEST_CASE("decoded positions lie exactly on the grid") {
   const Box box{Vec3(-17.3, 2.1, -5.7), Vec3(21.9, 14.2, 30.8)};
   const QuantizationGrid grid = fit_grid(box, 0.003);
-  FlatMesh mesh = flatten(three_layers("house", Vec3::Zero()).layers[0].mesh, box.min, grid, 0);
+  FlatMesh mesh = flatten(three_layers("house", Vec3::Zero()).levels[0].mesh, box.min, grid, 0);
   const DracoContent content = decode_draco(encode_draco(mesh, grid).bytes);
   for (const double x : content.attributes.at(0).values)
     CHECK(x / grid.step() == std::round(x / grid.step()));
@@ -372,7 +404,7 @@ TEST_CASE("decoded positions lie exactly on the grid") {
 TEST_CASE("one feature or several, ids come back as they were") {
   const QuantizationGrid grid = fit_grid({Vec3::Constant(-50), Vec3::Constant(50)}, 0.01);
   for (const int second : {7, 300, 70000}) {
-    const PolygonMesh house = three_layers("house", Vec3::Zero()).layers[0].mesh;
+    const PolygonMesh house = three_layers("house", Vec3::Zero()).levels[0].mesh;
     FlatMesh mesh = flatten(house, Vec3::Zero(), grid, 7);
     append(mesh, flatten(house, Vec3(30, 0, 0), grid, second));
     const DracoResult draco = encode_draco(mesh, grid);
@@ -385,7 +417,7 @@ TEST_CASE("one feature or several, ids come back as they were") {
 
 TEST_CASE("a building without triangles is refused by name") {
   ExportBuilding empty = three_layers("hollow", kFar);
-  empty.layers[1].mesh = {};
+  empty.levels[1].mesh = {};
   CHECK_THROWS_WITH(encode_building_glb(empty), Catch::Contains("hollow"));
   CHECK_THROWS_AS(encode_tileset({empty}), Error);
   CHECK_THROWS_AS(encode_tileset({}), Error);

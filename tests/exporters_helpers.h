@@ -53,16 +53,16 @@ inline PolygonMesh as_polygons(const Mesh& m) {
   return out;
 }
 
-/// A house in three layers: box, gable, gable with a chimney beside it (all closed).
+/// A house in three levels: box, gable, gable with a chimney beside it (all closed).
 inline ExportBuilding three_layers(const std::string& name, const Vec3& origin) {
   const Mesh gable = gable_house(12.3, 8.1, 5.7, 3.3);
   const Mesh chimney = box_mesh({2.1, 2.2, 7.5}, {2.9, 3.1, 10.4});
   return {name,
           name + ".obj",
           origin,
-          {{0, as_polygons(box_mesh({0, 0, 0}, {12.3, 8.1, 7.1})), 2.1},
-           {1, as_polygons(gable), 0.9},
-           {2, as_polygons(join(gable, chimney)), 0.05}}};
+          {{{0}, as_polygons(box_mesh({0, 0, 0}, {12.3, 8.1, 7.1})), 0.6, 3.3},
+           {{1}, as_polygons(gable), 0.3, 2.25},
+           {{2}, as_polygons(join(gable, chimney)), 0, 0}}};
 }
 
 struct Glb {
@@ -129,14 +129,16 @@ inline Decoded decode_mesh(const Glb& glb, int mesh) {
   return out;
 }
 
-/// Building i of a street at 10^6 metres; some have fewer layers.
+/// Building i of a street at 10^6 metres; some have fewer levels.
 inline std::vector<ExportBuilding> street(int n) {
   std::vector<ExportBuilding> buildings;
   for (int i = 0; i < n; ++i) {
     buildings.push_back(
         three_layers("b" + std::to_string(i),
                      Vec3(691234.567, 5334567.891, 512.345) + Vec3(20 * (i % 7), 15 * (i / 7), 0)));
-    if (i % 5 == 3) buildings.back().layers.resize(1 + i % 2);
+    if (i % 5 != 3) continue;
+    buildings.back().levels.resize(1 + i % 2);
+    buildings.back().levels.back().gsd = buildings.back().levels.back().deviation = 0;
   }
   return buildings;
 }

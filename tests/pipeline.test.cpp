@@ -11,6 +11,7 @@
 #include "../exporters/glb.h"
 #include "../exporters/tiles3d.h"
 #include "../src/parallel.h"
+#include "../src/publish.h"
 #include "../src/report.h"
 #include "../src/synth.h"
 #include "meshes.h"
@@ -59,7 +60,7 @@ void check_chain(const Building& b, int layers) {
     CHECK(b.layers[k].validity.vertices >= b.layers[k - 1].validity.vertices);
     CHECK(b.layers[k].validity.polygons >= b.layers[k - 1].validity.polygons);
     CHECK(b.layers[k].segments >= b.layers[k - 1].segments);
-    CHECK(b.layers[k].geometric_error <= b.layers[k - 1].geometric_error);
+    CHECK(b.layers[k].sight.deviation <= b.layers[k - 1].sight.deviation);
   }
 }
 
@@ -82,15 +83,13 @@ std::string report_without_times(const Scene& scene, const Options& options) {
   return json.dump();
 }
 
-std::string all_bytes(const Scene& scene) {
+std::string all_bytes(Scene scene) {
   std::string bytes;
   std::vector<ExportBuilding> buildings;
+  decide_switches(scene, 3, {});
   for (const Building& b : scene.buildings) {
-    ExportBuilding e{
-        .name = b.source.name, .source = b.source.path, .origin = b.frame.origin, .layers = {}};
-    for (const Layer& l : b.layers) e.layers.push_back({l.layer, l.mesh, l.geometric_error});
-    bytes += encode_building_glb(e).bytes;
-    buildings.push_back(std::move(e));
+    buildings.push_back(export_building(b));
+    bytes += encode_building_glb(buildings.back()).bytes;
   }
   for (const Encoded& file : encode_tileset(buildings)) bytes += file.path + file.bytes;
   return bytes;

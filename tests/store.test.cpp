@@ -1,5 +1,7 @@
 #include "../src/store.h"
 
+#include <sqlite3.h>
+
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -68,7 +70,9 @@ TEST_CASE("stages through a scene file give the report of a build in one go") {
   for (Scene* s : {&direct, &staged}) {
     s->coanalysis_seconds = 0;
     for (Building& b : s->buildings) b.timings = {}, b.segments.visibility_seconds = 0;
+    decide_switches(*s, options.layers, {});
   }
+  CHECK(direct.switching.layers[0].gsd > direct.switching.layers[1].gsd);
   CHECK(report_json(staged, options, {}) == report_json(direct, options, {}));
 }
 
@@ -109,6 +113,34 @@ TEST_CASE("what is no scene file is refused by name") {
   CHECK_THROWS_AS(Store("/proc/no/such/place", true), Error);
 }
 
+TEST_CASE("a scene file of an older format is refused with what to do") {
+  TemporaryFile file;
+  sqlite3* db = nullptr;
+  REQUIRE(sqlite3_open(file.path.c_str(), &db) == SQLITE_OK);
+  sqlite3_exec(db, "PRAGMA user_version = 4; CREATE TABLE meta(key TEXT)", nullptr, nullptr,
+               nullptr);
+  sqlite3_close(db);
+  CHECK_THROWS_WITH(Store(file.path, false),
+                    Catch::Contains("format 4") && Catch::Contains("colod segment"));
+}
+
+TEST_CASE("a scene file tells what its buildings bring to the switches") {
+  TemporaryFile file;
+  Scene scene = build_scene({{house("a", 12), house("b", 10)}, {}}, small_options());
+  Store store(file.path, true);
+  for (const Building& b : scene.buildings) store.put_segments(b, 0, "key");
+  CHECK(store.sights().empty());
+  for (const Building& b : scene.buildings) store.put_meshes(b);
+  const std::vector<BuildingSights> sights = store.sights();
+  REQUIRE(sights.size() == 2);
+  decide_switches(scene, 3, {});
+  Scene later = build_scene({{house("c", 17)}, {}}, small_options());
+  decide_switches(later, 3, {}, sights);
+  CHECK(later.switching.is_from_prior);
+  for (int k = 0; k < 3; ++k) CHECK(later.switching.layers[k].gsd == scene.switching.layers[k].gsd);
+  CHECK(later.buildings[0].layers[0].gsd == scene.buildings[0].layers[0].gsd);
+}
+
 TEST_CASE("a scene is the same with its buildings in a temporary store") {
   const Options options = small_options();
   const std::vector<std::pair<std::string, double>> houses = {{"b", 10}, {"a", 12}};
@@ -137,7 +169,7 @@ TEST_CASE("a scene is the same with its buildings in a temporary store") {
     for (std::size_t k = 0; k < a.layers.size(); ++k) {
       CHECK(a.layers[k].mesh.vertices == b.layers[k].mesh.vertices);
       CHECK(a.layers[k].mesh.triangles == b.layers[k].mesh.triangles);
-      CHECK(a.layers[k].geometric_error == b.layers[k].geometric_error);
+      CHECK(a.layers[k].sight.deviation == b.layers[k].sight.deviation);
     }
   }
   CHECK(kept.buildings[2].failure == "gone.ply: cannot be opened");

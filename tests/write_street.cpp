@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <numbers>
 
-#include "../exporters/deviation.h"
 #include "../exporters/files.h"
 #include "../exporters/tiles3d.h"
 #include "exporters_helpers.h"
@@ -24,8 +23,7 @@ colod::Vec3 touching_plane(const colod::Vec3& world) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: write_street OUT N\n"), 2;
-  std::vector<colod::ExportBuilding> buildings = colod::test::street(std::stoi(argv[2]));
-  for (colod::ExportBuilding& b : buildings) colod::measure_visible_errors(b);
+  const std::vector<colod::ExportBuilding> buildings = colod::test::street(std::stoi(argv[2]));
   const colod::TilesOptions options = {.placement = {touching_plane, "a touching plane"}};
   for (const colod::Encoded& file : colod::encode_tileset(buildings, options))
     colod::write_file(argv[1], file);

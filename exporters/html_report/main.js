@@ -4,6 +4,7 @@ showOverview();
 showProblems();
 const drawPlots = showPlots(), drawPictures = showPictures();
 showTable((list, limit) => { drawPlots(list); drawPictures(list, limit); });
+showSwitching();
 showCoanalysis();
 showTime();
 showParameters();

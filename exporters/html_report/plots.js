@@ -1,4 +1,4 @@
-// Plots over the buildings, in the table's order: faces, error and segments of each layer.
+// Plots over the buildings, in the table's order: faces, error and segments of each layer. What all plots share.
 
 /** Ticks of a linear axis from 0 on. */
 function linearTicks(max, wanted = 5) {
@@ -7,9 +7,9 @@ function linearTicks(max, wanted = 5) {
   return Array.from({ length: Math.floor(max / step) + 1 }, (_, i) => i * step);
 }
 
-function linearScale(values) {
+function linearScale(values, write = whole) {
   const max = Math.max(1, ...values) * 1.05;
-  return { at: (v) => v / max, ticks: linearTicks(max), write: whole };
+  return { at: (v) => v / max, ticks: linearTicks(max), write };
 }
 
 /** Decades around the values, which are no less than `least`. */
@@ -19,10 +19,45 @@ function logScale(values, least, write) {
   const from = positive.length ? Math.min(low, high - 1) : 0, to = positive.length ? Math.max(high, from + 1) : 1;
   const ticks = Array.from({ length: to - from + 1 }, (_, i) => 10 ** (from + i));
   const minor = ticks.slice(0, -1).flatMap((t) => [2, 3, 4, 5, 6, 7, 8, 9].map((f) => f * t));
-  return { at: (v) => (Math.log10(Math.max(v, least, 10 ** from)) - from) / (to - from), ticks, minor, write };
+  return { at: (v) => (Math.log10(Math.max(v, least, 10 ** from)) - from) / (to - from), from: (part) => 10 ** (from + part * (to - from)), ticks, minor, write };
 }
 
 const margin = { left: 82, right: 14, top: 12 };
+const text = (content, attributes) => make('svg:text', attributes, content);
+
+/** Lines and figures of the vertical axis of `plot`, and both axes from `top` to `base` and to `right`. */
+function axes(plot, y, top, base, right) {
+  const lines = plot.scale.ticks.flatMap((t) => [make('svg:path', { class: 'grid', d: `M${margin.left} ${y(t)}H${right}` }),
+    text(plot.scale.write(t), { x: margin.left - 8, y: y(t) + 4, 'text-anchor': 'end' })]);
+  const small = (plot.scale.minor ?? []).map((t) => `M${margin.left - 3} ${y(t)}h3`).join('');
+  return [...lines, make('svg:path', { class: 'axis', d: `M${margin.left} ${top}V${base}H${right}${small}` }),
+    text(plot.yTitle, { transform: `translate(14 ${(base + top) / 2}) rotate(-90)`, 'text-anchor': 'middle' })];
+}
+
+/** A tip that follows the pointer: `tell(x)` gives where its line stands, a title and lines of text, or nothing. */
+function tipOf(svg, top, base, tell) {
+  const pointer = make('svg:path', { class: 'at' }), tip = make('div', { class: 'tip', hidden: true });
+  svg.append(pointer);
+  svg.addEventListener('pointermove', (event) => {
+    const area = svg.getBoundingClientRect(), at = event.clientX - area.left, told = tell(at);
+    tip.hidden = !told;
+    pointer.setAttribute('d', told ? `M${told.x} ${top}V${base}` : '');
+    if (!told) return;
+    tip.replaceChildren(make('b', {}, told.title), ...told.lines.map((line) => make('div', {}, line)));
+    tip.style.left = at < area.width / 2 ? `${at + 14}px` : 'auto';
+    tip.style.right = at < area.width / 2 ? 'auto' : `${area.width - at + 14}px`;
+  });
+  svg.addEventListener('pointerleave', () => { tip.hidden = true; pointer.setAttribute('d', ''); });
+  return tip;
+}
+
+/** Draws `frames` with `draw(width)` now and whenever their width changes; returns a function that draws again. */
+function drawInto(frames, draw) {
+  let width = 0;
+  const again = () => { width = frames[0].clientWidth; draw(Math.max(280, width)); };
+  new ResizeObserver(() => { if (frames[0].clientWidth !== width) again(); }).observe(frames[0]);
+  return again;
+}
 
 /** Axes with what `plot` says: title, yTitle, scale, `draw(x, y, step)` for the marks, `tell(building)` for the pointer. */
 function drawPlot(box, width, list, plot) {
@@ -33,14 +68,7 @@ function drawPlot(box, width, list, plot) {
   const right = width - margin.right, base = height - bottom, step = (right - margin.left) / Math.max(1, list.length);
   const x = (i) => margin.left + (i + 0.5) * step, y = (v) => base - plot.scale.at(v) * (base - margin.top);
   const svg = make('svg:svg', { viewBox: `0 0 ${width} ${height}`, height, role: 'img', 'aria-label': `${plot.title}, ${plot.yTitle}` });
-  const text = (content, attributes) => make('svg:text', attributes, content);
-  for (const t of plot.scale.ticks) {
-    svg.append(make('svg:path', { class: 'grid', d: `M${margin.left} ${y(t)}H${right}` }),
-      text(plot.scale.write(t), { x: margin.left - 8, y: y(t) + 4, 'text-anchor': 'end' }));
-  }
-  const small = (plot.scale.minor ?? []).map((t) => `M${margin.left - 3} ${y(t)}h3`).join('');
-  svg.append(make('svg:path', { class: 'axis', d: `M${margin.left} ${margin.top}V${base}H${right}${small}` }),
-    text(plot.yTitle, { transform: `translate(14 ${(base + margin.top) / 2}) rotate(-90)`, 'text-anchor': 'middle' }));
+  svg.append(...axes(plot, y, margin.top, base, right));
   const [every] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 1e4].filter((n) => list.length / n <= width / 60);
   list.forEach((b, i) => {
     if (isNamed) {
@@ -51,19 +79,10 @@ function drawPlot(box, width, list, plot) {
   });
   svg.append(text(isNamed ? 'Building' : "Building, by its place in the table's order", { x: (margin.left + right) / 2, y: height - 4, 'text-anchor': 'middle' }));
   svg.append(...plot.draw(x, y, step));
-  const pointer = make('svg:path', { class: 'at' }), tip = make('div', { class: 'tip', hidden: true });
-  svg.append(pointer);
-  svg.addEventListener('pointermove', (event) => {
-    const area = svg.getBoundingClientRect(), at = event.clientX - area.left;
-    const b = list[Math.floor((at - margin.left) / step)];
-    tip.hidden = !b;
-    pointer.setAttribute('d', b ? `M${x(list.indexOf(b))} ${margin.top}V${base}` : '');
-    if (!b) return;
-    tip.replaceChildren(make('b', {}, b.name), ...plot.tell(b).map((line) => make('div', {}, line)));
-    tip.style.left = at < area.width / 2 ? `${at + 14}px` : 'auto';
-    tip.style.right = at < area.width / 2 ? 'auto' : `${area.width - at + 14}px`;
+  const tip = tipOf(svg, margin.top, base, (at) => {
+    const i = Math.floor((at - margin.left) / step), b = list[i];
+    return b && { x: x(i), title: b.name, lines: plot.tell(b) };
   });
-  svg.addEventListener('pointerleave', () => { tip.hidden = true; pointer.setAttribute('d', ''); });
   box.replaceChildren(make('h3', {}, plot.title), svg, tip);
 }
 
@@ -121,11 +140,8 @@ function showPlots() {
       ...layers.map((k) => make('span', { class: 'series', style: { '--c': colorOf(k) } }, layerName(k)))));
   const frames = plots.map(() => make('div', { class: 'plot' }));
   box.append(...frames);
-  let list = buildings, width = 0;
-  const draw = () => {
-    width = frames[0].clientWidth;
-    plots.forEach((plot, i) => drawPlot(frames[i], Math.max(280, width), list, { ...plot, draw: plot.series ? dots(list, plot.series, failed) : stacks(list) }));
-  };
-  new ResizeObserver(() => { if (frames[0].clientWidth !== width) draw(); }).observe(frames[0]);
+  let list = buildings;
+  const draw = drawInto(frames, (width) => plots.forEach((plot, i) =>
+    drawPlot(frames[i], width, list, { ...plot, draw: plot.series ? dots(list, plot.series, failed) : stacks(list) })));
   return (shown) => { list = shown; draw(); };
 }

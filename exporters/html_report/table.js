@@ -8,7 +8,7 @@ function showOverview() {
   const finest = buildings.map((b) => b.own[layerCount - 1]).filter((l) => l && !l.failure);
   const source = sum(buildings.map((b) => b.size)), fine = sum(finest.map((l) => l.faces));
   const coarse = sum(buildings.map((b) => b.own[0]?.faces));
-  const errors = finest.map((l) => l.hausdorff);
+  const errors = finest.map((l) => l.hausdorff), near = finest.map((l) => l.distance.p95);
   const figure = (label, value, note, state) => make('div', { class: 'figure' }, make('span', { class: 'label' }, label),
     make('b', { class: state }, value), make('small', {}, note));
   const units = new Set(buildings.map((b) => b.unit));
@@ -18,7 +18,7 @@ function showOverview() {
       `${whole(report.coanalysis.segments)} segments of ${whole(sum(buildings.map((b) => b.planes)))} planes`),
     figure('Faces of the finest layer', large(fine), `${percent(source ? fine / source : undefined, 1)} of the source; coarsest ${large(coarse)}`),
     figure('Watertight layers', `${whole(closed)} / ${whole(made.length)}`, `${count(layerCount, 'layer')} a building`, closed < made.length ? 'bad' : 'good'),
-    figure('Error, finest layer', `${metres(median(errors))} m`, `median; largest ${metres(errors.length ? Math.max(...errors) : undefined)} m`),
+    figure('Error, finest layer', `${metres(median(near))} m`, `95 % of the source is nearer, median; farthest ${metres(errors.length ? Math.max(...errors) : undefined)} m`),
     figure('Run', seconds(report.totals.seconds), `${bytes(report.totals.peak_memory_bytes)} of memory at most`));
 }
 
@@ -40,22 +40,32 @@ function showProblems() {
   if (warnings.length) box.append(make('details', {}, make('summary', {}, count(warnings.length, 'warning')), list(warnings.slice(0, 500))));
 }
 
+const columnsOfLayer = 6;
+
+/** What stands for g, or another measure of the difference to the finest layer, of a building's layer. */
+const gsdText = (g, l) => (l.like_finer ? `as ${l.layer + 1}` : g > 0 ? metres(g) : '0');
+
+const shareText = (x) => percent(x, x < 0.001 ? 2 : 1);
+
 /** Columns of the table: a title, a key to sort by (undefined goes last), and what stands in the cell. */
 function columns() {
   const own = [
     { title: 'Building', key: (b) => b.name, cell: (b) => make('a', { href: `#b${b.index}`, title: b.source }, b.name) },
     { title: 'Source faces', key: (b) => b.size, cell: (b) => `${whole(b.size)}${b.faces ? '' : ' pts'}` },
     { title: 'Planes', key: (b) => b.planes, cell: (b) => whole(b.planes) },
-    { title: 'Segments', key: (b) => b.segments, cell: (b) => whole(b.segments) },
-    { title: 'Warnings', key: (b) => b.warnings.length, cell: (b) => (b.warnings.length ? make('span', { class: 'warn' }, whole(b.warnings.length)) : '0') }];
+    { title: 'Seg\u00adments', key: (b) => b.segments, cell: (b) => whole(b.segments) },
+    { title: 'Left out', help: 'share of the source that was taken for ground or for pieces afloat', key: (b) => sum(b.left_out.map((l) => l.share)),
+      cell: (b) => (b.left_out.length ? shareText(sum(b.left_out.map((l) => l.share))) : none) },
+    { title: 'Warn\u00adings', key: (b) => b.warnings.length, cell: (b) => (b.warnings.length ? make('span', { class: 'warn' }, whole(b.warnings.length)) : '0') }];
   const ofLayer = (title, value, write, help) => (k) => ({ title, help, layer: k,
     key: (b) => (b.own[k] && !b.own[k].failure ? value(b.own[k]) : undefined),
     cell: (b) => (b.own[k] && !b.own[k].failure ? write(value(b.own[k]), b.own[k]) : none) });
   const state = (isClosed, l) => make('span', isClosed ? { class: 'good' } : { class: 'bad' },
     isClosed ? 'yes' : 'NO', l.self_intersections ? ` (${l.self_intersections} ×)` : '');
-  const each = [ofLayer('Faces', (l) => l.faces, whole, 'triangles'), ofLayer('Polygons', (l) => l.polygons, whole, 'planar facets'),
+  const each = [ofLayer('Faces', (l) => l.faces, whole, 'triangles'), ofLayer('Poly\u00adgons', (l) => l.polygons, whole, 'planar facets'),
+    ofLayer('Own g', (l) => l.own_gsd, gsdText, 'metres that one pixel covers, from where on the layer would do for this building'),
+    ofLayer('95 % m', (l) => l.distance.p95, metres, '95 % of what was taken of the source is no farther from the layer, metres'),
     ofLayer('Error m', (l) => l.hausdorff, metres, 'largest distance from the source to the layer, metres'),
-    ofLayer('Mean m', (l) => l.mean_distance, metres, 'mean distance from the source to the layer, metres'),
     ofLayer('Closed', (l) => Number(l.watertight), state, 'watertight; in brackets, intersecting pairs of faces')];
   return [...own, ...layers.flatMap((k) => each.map((column) => column(k)))];
 }
@@ -74,8 +84,8 @@ function showTable(follow) {
   const all = columns(), body = make('tbody');
   const heads = all.map((column, i) => make('th', { scope: 'col', title: column.help,
     class: column.layer !== undefined && column.title === 'Faces' ? 'first' : undefined, onclick: () => sort(i) }, make('button', { type: 'button' }, column.title)));
-  const groups = make('tr', {}, make('th', { colspan: all.length - 5 * layerCount }),
-    ...layers.map((k) => make('th', { colspan: 5, class: 'group', scope: 'colgroup' }, make('span', { class: 'swatch', style: { '--c': colorOf(k) } }), layerName(k))));
+  const groups = make('tr', {}, make('th', { colspan: all.length - columnsOfLayer * layerCount }),
+    ...layers.map((k) => make('th', { colspan: columnsOfLayer, class: 'group', scope: 'colgroup' }, make('span', { class: 'swatch', style: { '--c': colorOf(k) } }), layerName(k))));
   const rows = [];
   let sorted = 0, direction = 1, limit = mostRows;
   const search = make('input', { type: 'search', placeholder: 'Filter by name', 'aria-label': 'Filter by name', oninput: () => update() });
@@ -103,7 +113,7 @@ function showTable(follow) {
   }
   section('buildings').append(make('div', { class: 'tools' }, search, filter, shown, more),
     make('div', { class: 'wide', tabindex: 0 }, make('table', { id: 'table' }, make('thead', {}, groups, make('tr', {}, ...heads)), body)),
-    make('p', { class: 'note' }, 'Click a heading to sort; plots and pictures follow. Error: largest distance in metres from the source to the layer. Layer 0 is the coarsest.'));
+    make('p', { class: 'note' }, 'Click a heading to sort; plots and pictures follow. Own g: metres that one pixel covers, from where on the layer would do for this building. 95 % and error (the largest): distances in metres from the source to the layer. Layer 0 is the coarsest.'));
   update();
 }
 
@@ -112,14 +122,14 @@ function rowOf(b, all) {
   const row = make('tr', { class: b.isFailed ? 'failed' : undefined }, make('th', { scope: 'row' }, all[0].cell(b), b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed')));
   if (b.failure) {  // the reason stands where the layers would
     row.append(...cells.filter(([c]) => c.layer === undefined).map(([, content]) => make('td', {}, content)),
-      make('td', { class: 'why first', colspan: 5 * layerCount }, b.failure));
+      make('td', { class: 'why first', colspan: columnsOfLayer * layerCount }, b.failure));
     return row;
   }
   for (let i = 0; i < cells.length; ++i) {
     const [column, content] = cells[i], isFirst = column.layer !== undefined && column.title === 'Faces';
     const failure = isFirst && b.own[column.layer]?.failure;
-    row.append(failure ? make('td', { class: 'why first', colspan: 5 }, failure) : make('td', { class: isFirst ? 'first' : undefined }, content));
-    if (failure) i += 4;
+    row.append(failure ? make('td', { class: 'why first', colspan: columnsOfLayer }, failure) : make('td', { class: isFirst ? 'first' : undefined }, content));
+    if (failure) i += columnsOfLayer - 1;
   }
   return row;
 }
@@ -144,6 +154,25 @@ function cardOf(b) {
   return card;
 }
 
+function captionOf(l) {
+  const difference = l.like_finer ? `, as layer ${l.layer + 1}` : l.own_gsd > 0 ? `, own g ${metres(l.own_gsd)} m/px` : '';
+  return `${count(l.faces, 'face')}${difference}`;
+}
+
+const reasons = { ground: 'ground', floater: 'pieces afloat' };
+function leftOut(b) {
+  const area = (l) => (l.area > 0 ? `${l.area.toFixed(1)} m², ` : '');
+  return b.left_out.map((l) => `${reasons[l.reason]} (${area(l)}${shareText(l.share)}), up to ${l.farthest.toFixed(1)} m away`).join('; ');
+}
+
+function measuresOf(b) {
+  const rows = b.own.filter((l) => l && !l.failure).map((l) => [layerCell(l.layer), gsdText(l.gsd, l), gsdText(l.own_gsd, l), gsdText(l.deviation, l),
+    ...['mean', 'p95', 'p99', 'max'].map((key) => metres(l.distance[key]))]);
+  return make('details', {}, make('summary', {}, 'Switching and distances'),
+    make('div', { class: 'wide fit' }, table(['Layer', 'g m/px', 'own g', 'Deviation m', 'Mean m', '95 % m', '99 % m', 'Largest m'], rows)),
+    make('p', { class: 'note' }, 'g: in force; own g: what this building needs by itself. Deviation: largest distance to the finest layer, both ways. The others: from what was taken of the source to the layer.'));
+}
+
 function fillCard(card) {
   loader.unobserve(card);
   if (card.childElementCount > 1) return;
@@ -152,10 +181,12 @@ function fillCard(card) {
     ? make('img', { src: own[i], alt: `${b.name}, ${title}`, loading: 'lazy', decoding: 'async' })
     : make('div', { class: failure ? 'none' : 'none calm' }, failure ? 'no mesh' : 'no picture'), make('figcaption', {}, make('b', {}, title), ' ', note));
   const strip = [picture(0, 'Source', `${whole(b.size)} ${b.unit}`, false),
-    ...b.own.map((l, k) => picture(k + 1, `Layer ${k}`, l && !l.failure ? `${whole(l.faces)} faces, ${metres(l.hausdorff)} m` : 'failed', !l || l.failure))];
+    ...b.own.map((l, k) => picture(k + 1, `Layer ${k}`, l && !l.failure ? captionOf(l) : 'failed', !l || l.failure))];
   card.append(...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
     make('div', { class: 'strip' }, ...strip));
-  if (b.warnings.length) card.append(make('details', {}, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
+  if (b.left_out.length) card.append(make('p', { class: 'note' }, `Left out of the source: ${leftOut(b)}.`));
+  if (b.own.some((l) => l && !l.failure)) card.append(measuresOf(b));
+  if (b.warnings.length) card.append(make('details', { class: 'warn' }, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
 }
 
 /** Returns a function that shows the first `limit` of the given buildings, in their order. */

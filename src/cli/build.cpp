@@ -73,19 +73,20 @@ int build(const BuildArguments& a) {
   const Log log = a.run.log();
   const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth);
   const std::optional<Prior> prior = read_prior(a.prior);
+  const std::vector<BuildingSights> sights = read_sights(a.prior, a.options.layers, log);
   const Inventory inventory = take_inventory(a.inputs, a.read);
   make_folder(a.output.out);  // fails now rather than after all the work
   TemporaryStore store;
   Judge judge(truth, store);
   Depot& judged = truth.empty() ? static_cast<Depot&>(store) : judge;
-  Press press(a.output, judged);
-  Gallery gallery(inventory.building_count(), a.options.layers, press);
+  Gallery gallery(inventory.building_count(), a.options.layers, judged);
   Scene scene = build_scene(
       inventory, [&](std::size_t file) { return read_file(inventory.files[file], a.read); },
-      a.options, a.output.has_no_page ? static_cast<Depot&>(press) : gallery,
+      a.options, a.output.has_no_page ? judged : gallery,
       [&](auto&&... args) { log.progress(args...); }, prior ? &*prior : nullptr);
   if (!truth.empty()) scene.consistency = tally_parts(judge.parts(), a.options.layers);
-  press.finish(scene, log);
+  decide_switches(scene, a.options.layers, switch_options(a.output), sights);
+  write_outputs(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, a.options, seconds.count(), gallery.take(scene), a.output, log);
 }

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "../../exporters/archive.h"
-#include "../../exporters/deviation.h"
 #include "../../exporters/engine.h"
 #include "../../exporters/files.h"
 #include "../../exporters/glb.h"
@@ -17,22 +16,15 @@
 #include "../error.h"
 #include "../georeference.h"
 #include "../parallel.h"
+#include "../publish.h"
 #include "../report.h"
 #include "../report_parts.h"
 #include "../report_pictures.h"
 #include "../stopwatch.h"
+#include "../store.h"
 
 namespace colod::cli {
 namespace {
-
-ExportBuilding export_building(const Building& b) {
-  ExportBuilding result{
-      .name = b.source.name, .source = b.source.path, .origin = b.frame.origin, .layers = {}};
-  for (const Layer& layer : b.layers)
-    if (layer.failure.empty())
-      result.layers.push_back({layer.layer, layer.mesh, layer.geometric_error});
-  return result;
-}
 
 /// What the files beside all sources say alike. Where they contradict each other or cannot be read,
 /// nothing, with a warning: never an invented place.
@@ -86,33 +78,46 @@ void write_page(const Scene& scene, const Options& options, const std::string& r
   write_file(a.out, encode_html_report(page));
 }
 
-EngineOptions engine_options(const OutputArguments& a) {
-  return {.quantization = a.quantization, .pixel_error = a.pixel_error};
+EngineOptions engine_options(const OutputArguments& a, const SwitchFacts& facts) {
+  return {.quantization = a.quantization, .switching = facts};
 }
 
 bool writes(const OutputArguments& a, const char* format) {
   return std::find(a.formats.begin(), a.formats.end(), format) != a.formats.end();
 }
 
-/// The files of one building.
-void write_building(const ExportBuilding& b, const OutputArguments& a) {
-  const GlbOptions glb{
-      .compression = a.compression, .quantization = a.quantization, .pixel_error = a.pixel_error};
-  if (writes(a, "glb")) write_file(a.out, encode_building_glb(b, glb));
-  if (writes(a, "engine"))
-    for (const Encoded& file : encode_engine_levels(b, engine_options(a))) write_file(a.out, file);
-  for (const ExportLayer& layer : b.layers) {
-    if (writes(a, "obj")) write_file(a.out, encode_obj(b, layer));
-    if (writes(a, "ply")) write_file(a.out, encode_ply(b, layer));
-  }
+/// Writes the chain and notes what each layer's mesh takes of it.
+void write_glb(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
+               Building& b) {
+  const BuildingGlb glb = encode_building_glb(
+      out, {.compression = a.compression, .quantization = a.quantization, .switching = facts});
+  write_file(a.out, glb);
+  for (std::size_t level = 0; level < out.levels.size(); ++level)
+    for (Layer& layer : b.layers)
+      if (std::ranges::count(out.levels[level].layers, layer.layer) > 0)
+        layer.bytes = glb.level_bytes[level];
 }
 
-void write_tileset(const std::vector<ExportBuilding>& buildings, const Placement& placement,
-                   const OutputArguments& a) {
+/// The files of one building.
+void write_building(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
+                    Building& b) {
+  if (writes(a, "glb")) write_glb(out, facts, a, b);
+  if (writes(a, "engine"))
+    for (const Encoded& file : encode_engine_levels(out, engine_options(a, facts)))
+      write_file(a.out, file);
+  for (const ExportLevel& level : out.levels)
+    for (const int layer : level.layers) {
+      if (writes(a, "obj")) write_file(a.out, encode_obj(out, level, layer));
+      if (writes(a, "ply")) write_file(a.out, encode_ply(out, level, layer));
+    }
+}
+
+void write_tileset(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts,
+                   const Placement& placement, const OutputArguments& a) {
   const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
                                                                 .quantization = a.quantization,
                                                                 .target_sse = a.target_sse,
-                                                                .pixel_error = a.pixel_error,
+                                                                .switching = facts,
                                                                 .placement = placement});
   if (writes(a, "3tz")) write_file(a.out, encode_3tz(files));
   if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
@@ -120,6 +125,37 @@ void write_tileset(const std::vector<ExportBuilding>& buildings, const Placement
 }
 
 }  // namespace
+
+void add_switch_options(CLI::App& app, SwitchOptions& o) {
+  app.add_option_function<std::string>(
+         "--switch",
+         [&o](const std::string& v) {
+           o.measure = v == "deviation" ? SwitchMeasure::kDeviation : SwitchMeasure::kVisual;
+         },
+         "what decides from where on a layer may stand: visual (default), pictures of it beside "
+         "the finest one; or deviation, the distance between them")
+      ->check(CLI::IsMember({"visual", "deviation"}));
+  app.add_option_function<std::string>(
+         "--switch-scope",
+         [&o](const std::string& v) {
+           o.scope = v == "building" ? SwitchScope::kBuilding : SwitchScope::kScene;
+         },
+         "scene (default): all buildings switch at the same distance; building: each at its own")
+      ->check(CLI::IsMember({"scene", "building"}));
+  app.add_option(
+         "--visual-error", o.visual_error,
+         "with --switch visual: a change may be as large as a square of this side [pixels], "
+         "default 8")
+      ->check(CLI::Range(1.0, 32.0));
+  app.add_option("--pixel-error", o.pixel_error,
+                 "with --switch deviation, and for the boxes of far tiles: how many pixels a layer "
+                 "may be wrong when it is shown, default 2")
+      ->check(CLI::Range(0.01, 1e4));
+  app.add_option("--switch-share", o.share,
+                 "with --switch-scope scene: the share of buildings whose own bound is kept, "
+                 "default 0.9")
+      ->check(CLI::Range(0.0, 1.0));
+}
 
 void add_output_options(CLI::App& app, OutputArguments& a) {
   app.add_option("-o,--out", a.out, "folder to write to")->required();
@@ -150,44 +186,51 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
   app.add_option("--target-sse", a.target_sse,
                  "the screen-space error that clients refine at [pixels], default 16")
       ->check(CLI::Range(0.01, 1e4));
-  app.add_option("--pixel-error", a.pixel_error,
-                 "how many pixels a layer may be wrong when it is shown, default 2")
-      ->check(CLI::Range(0.01, 1e4));
+  add_switch_options(app, a.switching);
   app.add_flag("--no-report-html", a.has_no_page,
                "report.json only, no report.html and no pictures for it");
 }
 
-Press::Press(const OutputArguments& a, Depot& depot) : arguments_(a), depot_(depot) {}
-
-void Press::put(Building& b) { depot_.put(b); }
-void Press::get(Building& b) { depot_.get(b); }
-
-void Press::drop(Building& b) {
-  depot_.drop(b);
-  Stopwatch watch(b.timings.export_);
-  ExportBuilding out = export_building(b);
-  if (out.layers.empty()) return;
-  measure_visible_errors(out);
-  write_building(out, arguments_);
-  const std::lock_guard lock(mutex_);
-  buildings_[b.source.name] = std::move(out);
+void write_outputs(Scene& scene, const OutputArguments& a, const Log& log) {
+  Stopwatch watch(scene.export_seconds);
+  const SwitchFacts facts = switch_facts(scene.switching);
+  std::vector<ExportBuilding> buildings;
+  std::vector<Building*> sources;
+  for (Building& b : scene.buildings)
+    if (ExportBuilding out = export_building(b); !out.levels.empty())
+      buildings.push_back(std::move(out)), sources.push_back(&b);
+  if (buildings.empty()) return;
+  parallel_for(buildings.size(), [&](std::size_t i) {
+    Stopwatch own(sources[i]->timings.export_);
+    write_building(buildings[i], facts, a, *sources[i]);
+  });
+  if (writes(a, "engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a, facts)));
+  if (writes(a, "3dtiles") || writes(a, "3tz"))
+    write_tileset(buildings, facts, place(scene, a, buildings.front().origin, log), a);
 }
 
-void Press::finish(Scene& scene, const Log& log) {
-  Stopwatch watch(scene.export_seconds);
-  std::vector<ExportBuilding> buildings;
-  for (const Building& b : scene.buildings)
-    if (const auto it = buildings_.find(b.source.name); it != buildings_.end())
-      buildings.push_back(std::move(it->second));
-  buildings_.clear();
-  if (buildings.empty()) return;
-  const OutputArguments& a = arguments_;
-  if (writes(a, "engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a)));
-  if (writes(a, "3dtiles") || writes(a, "3tz"))
-    write_tileset(buildings, place(scene, a, buildings.front().origin, log), a);
+SwitchOptions switch_options(const OutputArguments& a) {
+  SwitchOptions options = a.switching;
+  options.rounding = a.quantization;
+  return options;
+}
+
+std::vector<BuildingSights> read_sights(const std::string& prior, int layers, const Log& log) {
+  if (prior.empty()) return {};
+  const Store store(prior, false);
+  if (const int its = store.options().layers; its != layers)
+    throw Error(Stage::kUsage, "--prior",
+                "it has " + std::to_string(its) + " layers, not " + std::to_string(layers));
+  std::vector<BuildingSights> sights = store.sights();
+  if (sights.empty())
+    log.message(Level::kWarning, prior +
+                                     ": holds no meshes, so that this scene's own buildings "
+                                     "decide where layers switch: run colod mesh on it first");
+  return sights;
 }
 
 void report_problems(const Scene& scene, const Log& log) {
+  for (const std::string& w : scene.switching.warnings) log.message(Level::kWarning, w);
   for (const ReadFailure& f : scene.failures) log.message(Level::kError, f.path + ": " + f.message);
   for (const Building& b : scene.buildings) {
     if (!b.failure.empty()) log.message(Level::kError, b.failure);

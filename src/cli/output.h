@@ -1,8 +1,6 @@
 // What `build` and `export` share: a finished scene to files, messages and an exit code.
 #pragma once
 
-#include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -17,7 +15,8 @@ struct OutputArguments {
   std::string out;
   std::vector<std::string> formats = {"glb", "3dtiles"};
   Compression compression = Compression::kDraco;
-  double quantization = 0.01, target_sse = 16, pixel_error = 2;
+  double quantization = 0.01, target_sse = 16;
+  SwitchOptions switching;
   std::string crs, origin;   ///< empty: what lies beside the sources says
   bool has_no_page = false;  ///< no report.html
 };
@@ -27,25 +26,16 @@ using Pictures = std::vector<std::vector<std::string>>;
 
 void add_output_options(CLI::App& app, OutputArguments& a);
 
-/// Writes a building's files when its layers are done, while others are computed, notes the seconds
-/// in its timings and passes everything on. drop throws Error{kOutput}.
-class Press : public Depot {
- public:
-  Press(const OutputArguments& a, Depot& depot);
-  void put(Building& building) override;
-  void get(Building& building) override;
-  void drop(Building& building) override;
+/// With the rounding of what is written.
+SwitchOptions switch_options(const OutputArguments& a);
 
-  /// After the last building: what is about the whole scene, in its order, and its seconds; says
-  /// where on Earth the tileset is, if anywhere. Throws Error{kOutput}.
-  void finish(Scene& scene, const Log& log);
+/// The sights of a prior's buildings; none, with a warning, when it has no meshes. Throws
+/// Error{kUsage} when its number of layers is another.
+std::vector<BuildingSights> read_sights(const std::string& prior, int layers, const Log& log);
 
- private:
-  const OutputArguments& arguments_;
-  Depot& depot_;
-  std::mutex mutex_;
-  std::map<std::string, ExportBuilding> buildings_;
-};
+/// After decide_switches: writes the files of all buildings and of the scene, notes their seconds
+/// and bytes, and says where on Earth the tileset is, if anywhere. Throws Error{kOutput}.
+void write_outputs(Scene& scene, const OutputArguments& a, const Log& log);
 
 /// Failures as errors, the rest as warnings, one line each.
 void report_problems(const Scene& scene, const Log& log);

@@ -180,17 +180,18 @@ int export_files(const StageArguments& a) {
   make_folder(a.output.out);
   const Options options = stores.front().options();
   Depot memory;
-  Press press(a.output, memory);
-  Gallery gallery(scene.buildings.size(), options.layers, press);
+  Gallery gallery(scene.buildings.size(), options.layers, memory);
   std::mutex mutex;
-  parallel_for(scene.buildings.size(), [&](std::size_t i) {
-    Building& b = scene.buildings[i];
-    if (a.output.has_no_page) return press.drop(b);
-    bring_source(b, stores[file_of[i]], mutex);
-    gallery.drop(b);
-    drop_geometry(b);
-  });
-  press.finish(scene, log);
+  if (!a.output.has_no_page)
+    parallel_for(scene.buildings.size(), [&](std::size_t i) {
+      Building& b = scene.buildings[i];
+      bring_source(b, stores[file_of[i]], mutex);
+      gallery.drop(b);
+      drop_geometry(b);
+    });
+  decide_switches(scene, options.layers, switch_options(a.output),
+                  read_sights(a.prior, options.layers, log));
+  write_outputs(scene, a.output, log);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return finish(scene, options, seconds.count(), gallery.take(scene), a.output, log);
 }
@@ -230,6 +231,9 @@ Run add_mesh(CLI::App& app) {
 
 Run add_export(CLI::App& app) {
   auto a = add_scene_files(app);
+  app.add_option("--prior", a->prior,
+                 "a scene file with meshes: its buildings decide where all layers switch")
+      ->check(CLI::ExistingFile);
   add_output_options(app, a->output);
   return [a] { return export_files(*a); };
 }

@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import draco3d from 'draco3d';
 import validator from 'gltf-validator';
-import { files, readGlb, root } from './outputs.mjs';
+import { columnsOf, files, readGlb, readJson, root, tilesOf } from './outputs.mjs';
 
 const tools = fileURLToPath(new URL('node_modules/3d-tiles-tools/build/src/cli.mjs', import.meta.url));
 
@@ -58,6 +58,44 @@ test('Draco streams decode with draco3d and match their accessors', async () => 
     }
   }
   assert.ok(streams >= 100);
+});
+
+test('tiles refine where a pixel covers less than the g of their features', () => {
+  for (const [folder, isPlanned] of [['local', true], ['earth', true], ['street', false]]) {  // the street has no plan of a scene
+    const { targetSse, switching } = readJson(path.join(root, folder, 'tileset.json')).asset.extras;
+    const scene = new Set(switching.layers?.map(({ gsd }) => Math.fround(gsd)));
+    const seen = { standIns: 0, layers: 0 };
+    for (const { tile, file } of tilesOf(path.join(root, folder))) {
+      const { layer, coarsest_layer: coarsest, gsd, deviation } = columnsOf(file);
+      const largest = targetSse * Math.max(...gsd);
+      if (tile.children) assert.ok(tile.geometricError >= largest * (1 - 1e-6), `${file}: ${tile.geometricError}, its g asks for ${largest}`);
+      else assert.deepEqual([tile.geometricError, Math.max(...gsd)], [0, 0], file);
+      for (const [i, k] of layer.entries()) {
+        ++seen[k < 0 ? 'standIns' : 'layers'];
+        assert.ok(coarsest[i] <= k && deviation[i] >= 0, file);
+        if (k >= 0) assert.ok(coarsest[i] >= 0 && scene.has(gsd[i]) === isPlanned, `${file}: g ${gsd[i]}, the scene has ${[...scene]}`);
+      }
+      const { layer: own, coarsestLayer } = tile.extras ?? {};
+      if (own !== undefined) assert.deepEqual([own, coarsestLayer], [layer[0], coarsest[0]], file);
+    }
+    assert.ok(seen.standIns > 0 && seen.layers > 0, folder);
+  }
+});
+
+test('a building has one g and deviation in the nodes and the table of its GLB and in the report', () => {
+  const folder = path.join(root, 'local'), { buildings, switching } = readJson(path.join(folder, 'report.json'));
+  for (const { name, layers } of buildings) {
+    const file = path.join(folder, 'buildings', `${name}.glb`), { json } = readGlb(file), columns = columnsOf(file);
+    for (const { extras } of json.nodes.filter((node) => node.extras?.layers)) {
+      const told = layers[extras.layer], row = columns.layer.indexOf(extras.layer);
+      assert.equal(extras.gsd, told.gsd, file);
+      assert.equal(columns.gsd[row], Math.fround(told.gsd), file);
+      assert.ok(extras.deviation >= told.deviation, file);
+      assert.deepEqual(extras.layers, layers.map((l) => l.layer).slice(columns.coarsest_layer[row], extras.layer + 1), file);
+      assert.ok(extras.layer === layers.length - 1 ? told.gsd === 0 : told.gsd === switching.layers[extras.layer].gsd, file);
+    }
+    assert.equal(json.nodes.filter((node) => node.extras?.layers).length, layers.filter((l) => !l.like_finer).length, file);
+  }
 });
 
 test('3d-tiles-tools reads the tileset and the 3tz, and finds the same files in both', () => {

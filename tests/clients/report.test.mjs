@@ -12,15 +12,33 @@ before(async () => { browser = await launch(); });
 after(async () => { await browser?.close(); });
 
 /** The page, with everything it asked for and complained about. */
-async function openReport(folder, viewport) {
+async function openReport(folder, viewport, file = 'report.html') {
   const page = await browser.newPage({ viewport });
   const requests = [], errors = [];
   page.on('request', (request) => requests.push(request.url()));
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) errors.push(message.text()); });
-  await page.goto(pathToFileURL(path.join(root, folder, 'report.html')).href, { waitUntil: 'load' });
+  await page.goto(pathToFileURL(path.join(root, folder, file)).href, { waitUntil: 'load' });
   return { page, requests: () => requests.filter((url) => !url.startsWith('data:')).slice(1), errors };
 }
+
+/** Writes the page beside itself with other data; returns its name. */
+function changeReport(folder, name, change) {
+  const page = fs.readFileSync(path.join(root, folder, 'report.html'), 'utf8');
+  fs.writeFileSync(path.join(root, folder, name), page.replace(/(id="report-data">)(.*?)(<\/script>)/s, (_, start, data, end) => {
+    const report = JSON.parse(data);
+    change(report);
+    return start + JSON.stringify(report).replaceAll('<', '\\u003c') + end;
+  }));
+  return name;
+}
+
+/** How high each step of a curve stands over the axis, as shares of the first. */
+const heights = (page, name) => page.locator(`#switching svg:has(.drawn.${name})`).evaluate((svg, curve) => {
+  const base = Number(/V([\d.]+)H/.exec(svg.querySelector('.axis').getAttribute('d'))[1]);
+  const [first, ...rest] = svg.querySelector(`.drawn.${curve}`).getAttribute('d').match(/(?<=V|M\d+ )[\d.]+/g).map((y) => base - y);
+  return [1, ...rest.map((height) => height / first)];
+}, name);
 
 /** The text of a column of the table, from top to bottom. */
 const column = (page, index) => page.locator(`#table tbody tr > :nth-child(${index + 1})`).allTextContents();
@@ -58,6 +76,93 @@ test('a click on a heading sorts the table, and pictures follow', async () => {
   assert.deepEqual(await page.locator('.card h3').evaluateAll((all) => all.map((h) => h.firstChild.textContent)), names);
   await page.locator('input[type=search]').fill(names[3]);
   assert.deepEqual(await column(page, 0), [names[3]]);
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+const finest = (building) => building.layers.at(-1), coarsest = (building) => building.layers[0];
+const total = (buildings, layer, key) => buildings.reduce((sum, b) => sum + layer(b)[key], 0);
+const kFar = 1080 / (2 * Math.tan(Math.PI / 6));  // metres away where a pixel of 1080 over 60 degrees covers one
+const near = (a, b, text) => assert.ok(Math.abs(a - b) < 0.01, `${text}: ${a}, not ${b}`);
+
+test('the report says when layers switch, and draws triangles and bytes against distance', async () => {
+  const { page, errors } = await openReport('local', { width: 1400, height: 900 });
+  const { switching, buildings } = readJson(path.join(root, 'local', 'report.json'));
+  const rows = await page.locator('#switching tbody tr').allTextContents();
+  for (const l of switching.layers.filter((layer) => layer.buildings > 0)) {
+    const row = rows.find((text) => text.startsWith(`Layer ${l.layer}`));
+    near(number(/from ([\d,.]+) m/.exec(row)[1]) / (l.gsd * kFar), 1, row);
+    assert.ok(row.includes(l.gsd.toFixed(3)) && row.includes(String(l.buildings)), row);
+    assert.match(row, l.too_coarse > 0 ? /[\d.]+ %, up to [\d.]+ ×/ : /0 %/);
+  }
+  const levels = new Set(switching.layers.filter((l) => l.buildings > 0).map((l) => l.gsd));
+  assert.ok(levels.size > 0);
+  assert.equal(await page.locator('#switching .switch').count(), levels.size);
+  for (const [name, key] of [['triangles', 'faces'], ['bytes', 'bytes']]) {
+    const steps = await heights(page, name);
+    assert.equal(steps.length, levels.size + 1);
+    near(steps.at(-1), total(buildings, coarsest, key) / total(buildings, finest, key), name);
+  }
+  await page.locator('#switching').scrollIntoViewIfNeeded();
+  await screenshot(page, 'report-switching');
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test('the plot against distance tells what is drawn under the pointer', async () => {
+  const { page } = await openReport('local', { width: 1400, height: 900 });
+  const { buildings } = readJson(path.join(root, 'local', 'report.json'));
+  const svg = page.locator('#switching svg');
+  for (const [part, layer] of [[0.08, finest], [0.9, coarsest]]) {
+    const triangles = total(buildings, layer, 'faces').toLocaleString('en');
+    let told = '';
+    for (let i = 0; !told.includes(`${triangles} triangles`) && i < 300; ++i) {  // cards above that come into view may still move it
+      await svg.evaluate((plot) => plot.scrollIntoView({ block: 'center' }));
+      const box = await svg.boundingBox();
+      await page.mouse.move(box.x + box.width * part + i % 2, box.y + 60);
+      told = await page.locator('#switching .tip').textContent();
+    }
+    const [, metres, gsd] = /^([\d,.]+) m, ([\d,.]+) m\/px/.exec(told).map(number);
+    near(metres / (gsd * kFar), 1, told);
+    assert.match(told, new RegExp(`m/px${triangles} triangles .*kB.*layer ${layer(buildings[0]).layer}: \\d+ buildings?`));
+  }
+  await page.close();
+});
+
+test("a building's card has its g, deviation and distances on every layer", async () => {
+  const { page, errors } = await openReport('local', { width: 1400, height: 900 });
+  const { buildings } = readJson(path.join(root, 'local', 'report.json'));
+  const own = (await headings(page)).indexOf('Own g');
+  assert.deepEqual(await column(page, own), buildings.map(({ layers: [l] }) => (l.like_finer ? 'as 1' : l.own_gsd.toFixed(3))));
+  const card = page.locator('.card').first();
+  await card.scrollIntoViewIfNeeded();
+  await card.locator('summary', { hasText: 'Switching' }).click();
+  const rows = await card.locator('tbody tr').evaluateAll((all) => all.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));
+  assert.deepEqual(rows, buildings[0].layers.map((l) => [...[l.gsd, l.own_gsd, l.deviation].map((x) => (l.like_finer ? `as ${l.layer + 1}` : x > 0 ? x.toFixed(3) : '0')),
+    ...['mean', 'p95', 'p99', 'max'].map((key) => l.distance[key].toFixed(3))]));
+  await screenshot(page, 'report-card');
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test('what was left out is told, alike layers are named, and bytes may be missing', async () => {
+  const file = changeReport('local', 'changed.html', ({ switching, buildings }) => {
+    buildings[0].left_out = [{ reason: 'ground', area: 12.34, share: 0.056, farthest: 7.8 }, { reason: 'floater', area: 0, share: 0.01, farthest: 9.1 }];
+    switching.scope = 'building';
+    Object.assign(switching.layers[0], { gsd: switching.layers[1].gsd, buildings: 0 });
+    for (const { layers: [first, second] } of buildings) Object.assign(first, { ...second, layer: 0, like_finer: true });
+    for (const l of buildings.flatMap((b) => b.layers)) delete l.bytes;
+  });
+  const { page, errors } = await openReport('local', { width: 1400, height: 900 }, file);
+  assert.equal((await column(page, (await headings(page)).indexOf('Left out')))[0], '6.6 %');
+  const card = page.locator('.card').first();
+  await card.scrollIntoViewIfNeeded();
+  assert.match(await card.textContent(), /ground \(12\.3 m², 5\.6 %\), up to 7\.8 m away; pieces afloat \(1\.0 %\), up to 9\.1 m away/);
+  assert.match(await card.locator('figcaption').nth(1).textContent(), /faces, as layer 1$/);
+  assert.match((await page.locator('#switching tbody tr').allTextContents()).at(-1), /^Layer 0.*as layer 1/);
+  assert.match(await page.locator('#switching').textContent(), /Each building switches by its own g/);
+  assert.equal(await page.locator('#switching .drawn.bytes').count(), 0);
+  assert.equal(await page.locator('#switching svg .drawn.triangles').count(), 1);
   assert.deepEqual(errors, []);
   await page.close();
 });

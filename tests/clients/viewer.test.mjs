@@ -5,7 +5,7 @@ import path from 'node:path';
 import { createInterface } from 'node:readline';
 import { after, before, test } from 'node:test';
 import { launch, open, screenshot } from './browser.mjs';
-import { root } from './outputs.mjs';
+import { finestContents, root, trianglesOf } from './outputs.mjs';
 
 let browser;
 before(async () => { browser = await launch(); });
@@ -31,6 +31,11 @@ async function ready(page) {
 }
 
 const counter = (page, id) => page.evaluate((name) => Number(document.getElementById(name).value), id);
+
+/** What is told of the picked building, in metres. */
+function toldMetres(page) {
+  return page.evaluate(() => Object.fromEntries(['pixel', 'gsd', 'deviation'].map((key) => [key, parseFloat(document.getElementById(`row-${key}`).textContent)])));
+}
 
 /** Clicks over a lattice until a building answers. */
 async function pick(page) {
@@ -102,6 +107,7 @@ test('an idle page draws nothing, and draws when something changes', async (t) =
     colour: () => page.check('input[value=building]'),
     edges: () => page.uncheck('#edges'),
     error: () => page.fill('#error', '1'),
+    finest: () => page.check('#finest'),
     home: () => page.click('#home'),
     pick: () => pick(page),
     size: () => page.setViewportSize({ width: 700, height: 500 }),
@@ -144,10 +150,54 @@ for (const [folder, expected] of Object.entries(scenes)) {
     await pick(page);
     assert.match(await page.innerText('#building h1'), expected.name);
     const told = await page.innerText('#building table');
-    for (const row of [/layer\s+2/, /error\s+\d+\.\d{3} m/, expected.source, /faces\s+[\d,]+/]) assert.match(told, row);
+    for (const row of [/layer\s+.*2/, /a pixel covers\s+\d+\.\d{3} m/, /shown from g\s+0\.000 m/, /deviation\s+0\.0\d\d m/, expected.source, /faces\s+[\d,]+/])
+      assert.match(told, row);
     await screenshot(page, `viewer-${folder}-picked`);
     await page.keyboard.press('Escape');
     assert.equal(await page.isVisible('#building'), false);
     assert.deepEqual(errors, []);
   });
 }
+
+test('a picked building tells what a pixel covers, and by that its layer gives way to the finest one', async (t) => {
+  const { page, errors } = await view(t, 'local');
+  await pick(page);
+  let before;
+  for (let slider = 8, isFinest = false; !isFinest; slider -= 0.5) {
+    assert.ok(slider >= 0, 'the finest layer never comes');
+    await page.fill('#error', String(slider));
+    await ready(page);
+    const told = await toldMetres(page), times = 2 ** (4 - slider);  // 16 pixels, where the slider begins: at g
+    assert.ok(told.pixel >= times * told.gsd - 0.001, `g ${told.gsd} m where a pixel covers ${told.pixel} m, slider at ${slider}`);
+    isFinest = told.gsd === 0;
+    if (isFinest) assert.ok(before.pixel <= 1.05 * times * before.gsd, `finer than g ${before.gsd} m where a pixel covered ${before.pixel} m, slider at ${slider}`);
+    before = told;
+  }
+  for (const [slider, meaning] of [['8', /at 0\.063 times the measured g$/], ['4', /at the measured g$/], ['2', /at 4 times the measured g$/]]) {
+    await page.fill('#error', slider);
+    assert.match(await page.innerText('#meaning'), meaning);
+  }
+  assert.deepEqual(errors, []);
+});
+
+test('the finest layers can be shown in place, and the slider holds again after that', async (t) => {
+  const { page, errors } = await view(t, 'local');
+  await page.fill('#error', '8');
+  await ready(page);
+  const coarse = await counter(page, 'triangles');
+  await page.keyboard.press('f');
+  await ready(page);
+  assert.equal(await counter(page, 'triangles'), finestContents(path.join(root, 'local')).reduce((sum, file) => sum + trianglesOf(file), 0));
+  assert.match(await page.innerText('#meaning'), /finest/);
+  await pick(page);
+  const far = await toldMetres(page);
+  assert.equal(far.gsd, 0);
+  await page.setViewportSize({ width: 640, height: 240 });
+  await page.waitForFunction((metres) => parseFloat(document.getElementById('row-pixel').textContent) > 1.5 * metres, far.pixel);
+  assert.ok(Math.abs((await toldMetres(page)).pixel / far.pixel - 2) < 0.02, 'half the lines: a pixel covers twice as much');
+  await page.setViewportSize({ width: 640, height: 480 });
+  await page.uncheck('#finest');
+  await ready(page);
+  assert.equal(await counter(page, 'triangles'), coarse);
+  assert.deepEqual(errors, []);
+});

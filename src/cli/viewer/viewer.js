@@ -19,7 +19,7 @@ const sun = new DirectionalLight('#fff4e0', 2);
 sun.position.set(-0.5, 1, 0.75);
 scene.add(new HemisphereLight('#eaf3ff', '#8f8a80', 1.7), sun);
 
-let radius = 100, corners = [], errorScale = 0, selected = null, pressed = null;
+let radius = 100, corners = [], targetSse = 16, selected = null, pressed = null;
 let bytes = 0, frames = 0, since = performance.now();  // counters
 let next = 0, calm = 0;  // the frame that is asked for; frames in which nothing has changed
 const kCalm = 3, kMargin = 1.08;
@@ -29,8 +29,9 @@ const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) =>
   corners = Array.from({ length: 8 }, (_, i) => new Vector3(...['x', 'y', 'z'].map((axis, k) => box[i >> k & 1 ? 'max' : 'min'][axis])));
   controls.maxDistance = 60 * radius;
   scene.add(ground(3 * radius));
-  errorScale = extras.errorScale ?? 0;
-  setError(extras.targetSse ?? 16);
+  targetSse = extras.targetSse ?? targetSse;
+  $('error').value = Math.log2(targetSse);
+  readError();
   $('place').textContent = extras.crs ?? 'local, no place on Earth';
   home();
 });
@@ -71,17 +72,16 @@ function home() {
 }
 
 /** The slider is logarithmic: 1 … 256 pixels. */
-function setError(pixels) {
-  $('error').value = Math.log2(pixels);
-  readError();
-}
-
 function readError() {
-  tiles.errorTarget = 2 ** $('error').value;
-  $('error-text').textContent = `${short(tiles.errorTarget)} px`;
-  $('meaning').textContent = errorScale > 0 ? `finer where shapes are ${short(tiles.errorTarget / errorScale)} px wrong` : '';
+  const pixels = 2 ** $('error').value, isFinest = $('finest').checked;
+  tiles.errorTarget = isFinest ? 0 : pixels;
+  $('error').disabled = isFinest;
+  $('error-text').textContent = `${short(pixels)} px`;
+  $('meaning').textContent = isFinest ? 'the finest layers, however far' : `layers switch at ${times(targetSse / pixels)} measured g`;
   setState('loading');
 }
+
+const times = (factor) => (factor === 1 ? 'the' : `${short(factor)} times the`);
 
 const short = (number) => number.toLocaleString('en', { maximumSignificantDigits: 2 });
 
@@ -106,28 +106,30 @@ function select(name) {
   showBuilding();
 }
 
-const visibleMeshes = () => [...tiles.visibleTiles].flatMap((tile) => tile.engineData.scene ? meshesOf(tile.engineData.scene) : []);
-const visibleRows = () => visibleMeshes().flatMap((mesh) => mesh.userData.rows ?? []);
+const meshesIn = (tile) => (tile.engineData.scene ? meshesOf(tile.engineData.scene) : []);
+const rowsIn = (tile) => meshesIn(tile).flatMap((mesh) => mesh.userData.rows ?? []);
+const visibleMeshes = () => [...tiles.visibleTiles].flatMap(meshesIn);
+const visibleRows = () => [...tiles.visibleTiles].flatMap(rowsIn);
 
-const words = {
-  layer: (layer) => (layer < 0 ? 'stand-in' : layer === 0 ? '0 (coarsest)' : String(layer)),
-  error: (metres) => `${metres.toFixed(3)} m`,
-  faces: (count) => count.toLocaleString('en'),
-};
+const layerName = (layer) => (layer < 0 ? 'stand-in' : layer === 0 ? '0 (coarsest)' : String(layer));
+const layersOf = ({ coarsest_layer: from, layer: to }) => (from === to ? layerName(to) : `${layerName(from)} to ${to}, alike`);
+const metres = (length) => `${length.toFixed(3)} m`;
 
-/** The metadata of the selected building on the level that is shown now. */
+/** Metres that one pixel covers at the nearest point of a tile's box: what decides whether the client refines it. */
+function pixelAt({ traversal }) {
+  return traversal.distanceFromCamera * 2 * Math.tan(0.5 * camera.fov * Math.PI / 180) / renderer.getSize(new Vector2()).y;
+}
+
+/** What is shown of the selected building now, and why. */
 function showBuilding() {
   $('building').hidden = selected === null;
-  const row = visibleRows().find(({ name }) => name === selected);
-  if (!row) return;
+  const tile = [...tiles.visibleTiles].find((visible) => rowsIn(visible).some(({ name }) => name === selected));
+  if (!tile) return;
+  const row = rowsIn(tile).find(({ name }) => name === selected);
   $('building').querySelector('h1').textContent = row.name;
-  $('building').querySelector('table').replaceChildren(...Object.entries(row).filter(([key]) => key !== 'name').map(([key, value]) => {
-    const line = document.createElement('tr');
-    line.append(document.createElement('th'), document.createElement('td'));
-    line.firstChild.textContent = key;
-    line.lastChild.textContent = words[key]?.(value) ?? value;
-    return line;
-  }));
+  const told = { layer: layersOf(row), pixel: metres(pixelAt(tile)), gsd: metres(row.gsd), deviation: metres(row.deviation),
+    faces: row.faces.toLocaleString('en'), source: row.source };
+  for (const [key, value] of Object.entries(told)) $(`row-${key}`).textContent = value;
 }
 
 /** The legend: what is shown, coarsest first. */
@@ -139,7 +141,7 @@ function showLayers() {
     const item = document.createElement('li'), swatch = document.createElement('i'), number = document.createElement('data');
     swatch.style.background = layerColour(layer);
     number.value = number.textContent = count;
-    item.append(swatch, layer < 0 ? 'stand-ins' : `layer ${words.layer(layer)}`, number);
+    item.append(swatch, layer < 0 ? 'stand-ins' : `layer ${layerName(layer)}`, number);
     return item;
   }));
 }
@@ -232,11 +234,15 @@ canvas.addEventListener('dblclick', (event) => {
   controls.target.copy(hit.point);
   wake();
 });
-addEventListener('keydown', ({ key }) => { if (key === 'Escape') select(null); });
+addEventListener('keydown', ({ key, repeat, ctrlKey, metaKey }) => {
+  if (key === 'Escape') select(null);
+  if (key === 'f' && !repeat && !ctrlKey && !metaKey) $('finest').click();
+});
 settings.addEventListener('submit', (event) => event.preventDefault());
 for (const choice of settings.colour) choice.addEventListener('input', repaint);
 $('edges').addEventListener('input', () => { showEdges($('edges').checked); wake(); });
 $('error').addEventListener('input', readError);
+$('finest').addEventListener('input', readError);
 $('home').addEventListener('click', home);
 $('close').addEventListener('click', () => select(null));
 wake();

@@ -6,14 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace colod {
 
 namespace {
 
 constexpr int kMostSteps = 128;      // along a triangle's edge
-constexpr double kSteps = 64;        // along a building's diagonal
+constexpr double kSteps = 64;        // along a mesh's diagonal
 constexpr double kFinestStep = 0.1;  // metres
 
 constexpr double kSlack = 1e-6;  // metres: more than distances are rounded by
@@ -43,10 +42,6 @@ double worst_of(const Vec3& a, const Vec3& u, const Vec3& v, int n, const RaySce
   return worst;
 }
 
-bool is_same(const Mesh& a, const Mesh& b) {
-  return a.faces == b.faces && a.vertices == b.vertices;
-}
-
 }  // namespace
 
 double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing, double known) {
@@ -60,29 +55,10 @@ double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing,
   return worst;
 }
 
-void measure_visible_errors(ExportBuilding& building) {
-  if (building.layers.empty()) return;
-  std::vector<Mesh> meshes;
-  std::vector<RayScene> scenes;
-  for (const ExportLayer& layer : building.layers) {
-    meshes.push_back(layer.mesh.mesh());
-    scenes.emplace_back(meshes.back());
-  }
-  const std::size_t finest = meshes.size() - 1;
-  const double spacing =
-      std::max(kFinestStep, bounding_box(meshes[finest].vertices).diagonal() / kSteps);
-  double least = building.layers[finest].geometric_error;
-  for (std::size_t i = finest; i-- > 0;) {
-    double& error = building.layers[i].geometric_error;
-    error = std::max(error, least);
-    for (const std::size_t other : std::set<std::size_t>{i + 1, finest}) {
-      if (meshes[i].faces.empty() || meshes[other].faces.empty()) continue;
-      if (is_same(meshes[i], meshes[other])) continue;
-      error = one_sided_deviation(meshes[i], scenes[other], spacing, error);
-      error = one_sided_deviation(meshes[other], scenes[i], spacing, error);
-    }
-    least = error;
-  }
+double two_sided_deviation(const Mesh& a, const RayScene& scene_a, const Mesh& b,
+                           const RayScene& scene_b, double known) {
+  const double spacing = std::max(kFinestStep, bounding_box(b.vertices).diagonal() / kSteps);
+  return one_sided_deviation(b, scene_a, spacing, one_sided_deviation(a, scene_b, spacing, known));
 }
 
 }  // namespace colod

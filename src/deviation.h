@@ -1,8 +1,7 @@
 // How far one surface lies from another, for errors that a viewer can see.
 #pragma once
 
-#include "../src/rays.h"
-#include "exporter.h"
+#include "rays.h"
 
 namespace colod {
 
@@ -11,8 +10,9 @@ namespace colod {
 /// What is no farther than `known` need not be found: the result is at least that.
 double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing, double known = 0);
 
-/// Raises each layer's geometric_error to its distance, both ways, to the next finer layer and to
-/// the finest one: where a client switches, what a layer adds shows as much as what it lacks.
-void measure_visible_errors(ExportBuilding& building);
+/// The two-sided Hausdorff distance of two meshes, at least `known`. `scene_a` and `scene_b` hold
+/// the same meshes. The lattice is as fine as 0.1 m or a 64th of b's diagonal, whichever is more.
+double two_sided_deviation(const Mesh& a, const RayScene& scene_a, const Mesh& b,
+                           const RayScene& scene_b, double known = 0);
 
 }  // namespace colod
