@@ -343,6 +343,35 @@ TEST_CASE("broken faces and single points do not make a distance NaN") {
   CHECK_THROWS_AS(measure_distances(Source{}, m), Error);
 }
 
+TEST_CASE("what was left out counts in the raw maximum and not in the spread") {
+  const Mesh floor = square(10, 0);
+  Mesh both = test::join(floor, square(1, 4));  // a scrap, four metres up, of 1 % of the area
+  const Source source = test::as_source(both);
+  std::vector<char> is_scrap(both.faces.size(), 0);
+  for (std::size_t f = floor.faces.size(); f < is_scrap.size(); ++f) is_scrap[f] = 1;
+  const Mesh target = square(10, 0.5);
+  const Distances all = DistanceGauge(source).measure_to(target);
+  CHECK(all.taken.max == all.a_to_b);
+  CHECK(all.taken.mean == Approx(all.mean_a_to_b));
+  CHECK(all.taken.p95 == Approx(0.5).margin(1e-6));
+  const Distances taken = DistanceGauge(source, {}, is_scrap).measure_to(target);
+  CHECK(taken.a_to_b == Approx(3.5).margin(1e-6));
+  CHECK(taken.taken.max == Approx(0.5).margin(1e-6));
+  CHECK(taken.taken.p99 == Approx(0.5).margin(1e-6));
+  CHECK(taken.taken.mean == Approx(0.5).margin(1e-6));
+}
+
+TEST_CASE("quantiles of a spread are those of the area") {
+  Mesh steps;  // a tenth of the area 3 m up, the rest at 0
+  steps = test::join(square(3, 0), square(1, 3));
+  const Distances d = measure_distances(steps, square(3, 0));
+  CHECK(d.taken.p95 == Approx(3).margin(1e-6));
+  CHECK(d.taken.mean == Approx(0.3).margin(0.01));
+  const Distances little = measure_distances(test::join(square(6, 0), square(1, 3)), square(6, 0));
+  CHECK(little.taken.p95 == Approx(0).margin(1e-6));
+  CHECK(little.taken.p99 == Approx(3).margin(1e-6));
+}
+
 TEST_CASE("distances are the same with one thread and two") {
   const Mesh a = test::sphere_mesh(4), b = test::gable_house(1, 1, 1, 1);
   limit_threads(1);

@@ -93,6 +93,7 @@ TEST_CASE("a floater is dropped, an unconnected piece on the wall is kept") {
   CHECK(without.box.max.x() == 10);
   CHECK(without.total_area == Approx(2 * (60 + 40 + 24)));
   REQUIRE(without.warnings.size() == 1);
+  CHECK(std::count(without.plane_of_item.begin(), without.plane_of_item.end(), kFloater) == 12);
   m = join(box_mesh({0, 0, 0}, {10, 6, 4}), box_mesh({10, 2, 2}, {10.2, 2.2, 2.2}));
   CHECK(detect_planes(as_source(m)).box.max.x() == 10.2);
 }
