@@ -65,6 +65,7 @@ Json switching_json(const SwitchFacts& facts) {
                {"scope", facts.scope},
                {"visualError", facts.visual_error},
                {"pixelError", facts.pixel_error},
+               {"share", facts.share},
                {"viewportHeight", facts.viewport_height},
                {"fovYDeg", facts.fov_y_deg}};
   for (std::size_t k = 0; k < facts.layer_gsd.size(); ++k)

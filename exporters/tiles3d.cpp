@@ -72,7 +72,7 @@ Feature feature_of(const Scene& scene, const TilePart& part, double rounding, st
     return feature_of(scene.buildings[part.buildings[0]], *part.level, part.deviation + rounding,
                       faces);
   Feature f;
-  f.gsd = part.deviation / scene.options.switching.pixel_error;
+  f.gsd = part.gsd;
   f.deviation = part.deviation + rounding;
   f.faces = faces;
   for (std::size_t i = 0; i < std::min(kMostNames, part.buildings.size()); ++i)
@@ -163,7 +163,7 @@ void lighten_root(Scene& scene, TilePlan& plan) {
   std::size_t most = plan.farthest.size();
   const auto is_light = [&] { return static_cast<double>(root.file.bytes.size()) <= allowed; };
   const auto show_merged = [&](std::size_t count) {
-    show_farthest(plan, merge_stand_ins(plan.farthest, count));
+    show_farthest(plan, merge_stand_ins(plan.farthest, count, scene.options.switching.pixel_error));
     root.box = {}, root.gsd = 0;
     encode_content(scene, root);
   };
@@ -283,7 +283,7 @@ void check(const std::vector<ExportBuilding>& buildings) {
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
                                     const TilesOptions& options) {
   check(buildings);
-  TilePlan plan = plan_tiles(buildings);
+  TilePlan plan = plan_tiles(buildings, options.switching);
   Scene scene{buildings, options, {}, {}, {}};
   scene.frames.push_back(frame_of(scene, plan.root));
   list_contents(scene, plan.root, 0, "");

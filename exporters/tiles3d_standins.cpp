@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "../src/rays.h"
+#include "../src/switching.h"
 
 namespace colod {
 
@@ -18,7 +19,10 @@ namespace {
 constexpr double kHeights[] = {1.0, 0.9, 0.8, 0.7, 0.6, 0.5};  // shares of the building's height
 constexpr int kLattice = 16;  // steps along a box's side where it is measured
 constexpr double kFinestStep = 0.1;
-constexpr double kLeastHalf = 0.05;  // metres: a box has a volume
+constexpr double kLeastHalf = 0.05;    // metres: a box has a volume
+constexpr double kLeastStep = 1.25;    // from the coarsest level's gsd to its box's
+constexpr double kLeastSample = 0.05;  // metres, of pictures that boxes are judged by …
+constexpr double kSamples = 4;         // … or so many along the smallest pixel that matters
 
 double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
   return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
@@ -177,9 +181,19 @@ double cost(const StandIn& a, const StandIn& b) {
   return worst + std::max(a.error, b.error);
 }
 
+/// `coarsest`: the gsd of the level before which the box stands.
+double gsd_of(const StandIn& box, const Mesh& finest, double coarsest, const SwitchFacts& facts) {
+  const double least = kLeastStep * coarsest;
+  if (facts.measure != "visual") return std::max(least, box.error / facts.pixel_error);
+  Mesh mesh = mesh_of(box).mesh();
+  for (Vec3& p : mesh.vertices) p += box.origin;
+  const double sample = std::max(kLeastSample, least / kSamples);
+  return std::max(least, visible_gsd(measure_profile(mesh, finest, sample), facts.visual_error));
+}
+
 }  // namespace
 
-StandIn stand_in_for(const ExportBuilding& building, int index) {
+StandIn stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts) {
   const Mesh coarsest = building.levels.front().mesh.mesh();
   const Mesh finest = building.levels.back().mesh.mesh();
   StandIn box = least_box_about(coarsest.vertices);
@@ -204,12 +218,23 @@ StandIn stand_in_for(const ExportBuilding& building, int index) {
     }
     if (box.error < least) best = box, least = box.error;
   }
+  best.gsd = gsd_of(best, finest, building.levels.front().gsd, facts);
   best.origin += building.origin;
   best.buildings = {index};
   return best;
 }
 
-std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t most) {
+void agree_on_switch(std::vector<StandIn>& boxes, const SwitchFacts& facts) {
+  if (facts.scope != "scene" || boxes.empty()) return;
+  std::vector<double> own;
+  for (const StandIn& box : boxes) own.push_back(box.gsd);
+  const double coarsest = facts.layer_gsd.empty() ? 0 : facts.layer_gsd.front();
+  const double shared = std::max(kLeastStep * coarsest, value_at_share(own, facts.share));
+  for (StandIn& box : boxes) box.gsd = shared;
+}
+
+std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t most,
+                                     double pixel_error) {
   struct Pair {
     double cost;
     std::size_t other;
@@ -230,8 +255,9 @@ std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t mos
       if (pairs[i].cost < pairs[first].cost) first = i;
     const std::size_t second = pairs[first].other;
     StandIn box = joined(boxes[first], boxes[second]);
-    box.error = deviation(box, boxes[first], boxes[second]) +
-                std::max(boxes[first].error, boxes[second].error);
+    const double added = deviation(box, boxes[first], boxes[second]);
+    box.error = added + std::max(boxes[first].error, boxes[second].error);
+    box.gsd = std::max({added / pixel_error, boxes[first].gsd, boxes[second].gsd});
     boxes[first] = std::move(box);
     boxes.erase(boxes.begin() + static_cast<long>(second));
     pairs.erase(pairs.begin() + static_cast<long>(second));

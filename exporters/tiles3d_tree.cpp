@@ -19,25 +19,30 @@ constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm 
 constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
 constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
 constexpr std::size_t kMostStandIns = 64;  // in one tile
-constexpr double kWorthATile = 1.5;  // nearer by this factor: a level's least step (switching.h)
+constexpr double kWorthATile =
+    1.4;  // nearer by this factor: a little less than a level's least step
 
 void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<StandIn>& boxes) {
   tile.parts.clear();
   for (const StandIn& box : boxes) {
     meshes.push_back(mesh_of(box));
-    tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.error});
+    tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.gsd, box.error});
   }
 }
 
 class Planner {
  public:
-  explicit Planner(const std::vector<ExportBuilding>& buildings)
-      : buildings_(buildings), boxes_(buildings.size()), singles_(buildings.size()) {
+  Planner(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts)
+      : buildings_(buildings),
+        pixel_error_(facts.pixel_error),
+        boxes_(buildings.size()),
+        singles_(buildings.size()) {
     parallel_for(buildings.size(), [&](std::size_t i) {
       for (const Vec3& p : buildings[i].levels.front().mesh.vertices)
         boxes_[i].extend(Vec3(p + buildings[i].origin));
-      singles_[i] = stand_in_for(buildings[i], static_cast<int>(i));
+      singles_[i] = stand_in_for(buildings[i], static_cast<int>(i), facts);
     });
+    agree_on_switch(singles_, facts);
   }
 
   TilePlan plan() {
@@ -55,8 +60,9 @@ class Planner {
     tile.is_cell = !is_in_cell && is_cell(group);
     is_in_cell |= tile.is_cell;
     std::vector<StandIn> shown;
+    const bool is_merged = budget(group) < group.size();
     const auto add_near = [&](const std::vector<int>& part, const std::string& child) {
-      tile.children.push_back(near_tile(part, child));
+      tile.children.push_back(is_merged ? box_tile(part, child) : near_tile(part, child));
       for (const int b : part) shown.push_back(singles_[b]);
     };
     if (group.size() <= kMostChildren) {
@@ -71,9 +77,19 @@ class Planner {
           add_near(part, child);
       }
     }
-    shown = merge_stand_ins(std::move(shown), budget(group));
+    shown = merge_stand_ins(std::move(shown), budget(group), pixel_error_);
     show(plan_.stand_ins, tile, shown);
     below.insert(below.end(), shown.begin(), shown.end());
+    return tile;
+  }
+
+  /// Shows a box for each building, below a tile that merged them.
+  PlannedTile box_tile(const std::vector<int>& group, const std::string& name) {
+    PlannedTile tile{.name = name, .parts = {}, .children = {}};
+    std::vector<StandIn> boxes;
+    for (const int b : group) boxes.push_back(singles_[b]);
+    show(plan_.stand_ins, tile, boxes);
+    tile.children.push_back(near_tile(group, name + ".0"));
     return tile;
   }
 
@@ -113,7 +129,7 @@ class Planner {
 
   TilePart part_of(int b, std::size_t number) const {
     const ExportLevel& level = buildings_[b].levels[number];
-    return {{b}, &level, &level.mesh, buildings_[b].origin, level.deviation};
+    return {{b}, &level, &level.mesh, buildings_[b].origin, level.gsd, level.deviation};
   }
 
   std::size_t budget(const std::vector<int>& group) const {
@@ -160,6 +176,7 @@ class Planner {
   }
 
   const std::vector<ExportBuilding>& buildings_;
+  double pixel_error_;
   std::vector<Box> boxes_;        // of the coarsest levels, world
   std::vector<StandIn> singles_;  // one a building
   TilePlan plan_;
@@ -167,8 +184,8 @@ class Planner {
 
 }  // namespace
 
-TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings) {
-  return Planner(buildings).plan();
+TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts) {
+  return Planner(buildings, facts).plan();
 }
 
 void show_farthest(TilePlan& plan, const std::vector<StandIn>& boxes) {

@@ -28,6 +28,7 @@ SwitchFacts switch_facts(const Switching& switching) {
                     .scope = to_string(o.scope),
                     .visual_error = o.visual_error,
                     .pixel_error = o.pixel_error,
+                    .share = o.share,
                     .layer_gsd = {}};
   if (o.scope == SwitchScope::kScene)
     for (const SceneSwitch& layer : switching.layers) facts.layer_gsd.push_back(layer.gsd);

@@ -66,11 +66,17 @@ VisibleProfile profile_of(const std::vector<std::vector<double>>& views,
   return profile;
 }
 
-/// Sets the profiles of layers that are not the next finer one's like.
-void draw_profiles(const std::vector<Mesh>& layers, std::vector<LayerSight>& sights) {
+Box box_about(const std::vector<Mesh>& meshes) {
   Box box;
-  for (const Mesh& mesh : layers) box.extend(bounding_box(mesh.vertices));
-  const double sample = std::max(kFinestSample, box.diagonal() / kMostSamples);
+  for (const Mesh& mesh : meshes) box.extend(bounding_box(mesh.vertices));
+  return box;
+}
+
+/// Sets the profiles of layers that are not the next finer one's like.
+void draw_profiles(const std::vector<Mesh>& layers, double sample,
+                   std::vector<LayerSight>& sights) {
+  const Box box = box_about(layers);
+  sample = std::max(sample, box.diagonal() / kMostSamples);
   const std::vector<int> sizes = pixel_sizes();
   const std::vector<Vec3> directions = ring_directions(kViews, kElevations_deg);
   std::vector<std::vector<std::vector<double>>> found(  // per layer and view
@@ -114,14 +120,6 @@ double least_step(const SwitchOptions& options) {
   return options.measure == SwitchMeasure::kVisual ? kVisualStep : kDeviationStep;
 }
 
-/// The smallest value that at least `share` of the values do not exceed; sorts them.
-double value_at(std::vector<double>& values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = std::ceil(share * static_cast<double>(values.size()) - 1e-9) - 1;
-  return values[static_cast<std::size_t>(
-      std::clamp(place, 0.0, static_cast<double>(values.size() - 1)))];
-}
-
 /// Own gsds of the buildings that count, per layer.
 std::vector<std::vector<double>> gsds_by_layer(const std::vector<BuildingSights>& buildings,
                                                int layers, const SwitchOptions& options) {
@@ -161,8 +159,21 @@ std::vector<LayerSight> measure_sights(const std::vector<Mesh>& layers) {
   measure_deviations(layers, sights);
   const bool is_any = std::any_of(sights.begin(), sights.end() - 1,
                                   [](const LayerSight& s) { return !s.is_like_finer; });
-  if (is_any) draw_profiles(layers, sights);
+  if (is_any) draw_profiles(layers, kFinestSample, sights);
   return sights;
+}
+
+VisibleProfile measure_profile(const Mesh& mesh, const Mesh& finest, double sample) {
+  std::vector<LayerSight> sights(2);
+  draw_profiles({mesh, finest}, sample, sights);
+  return std::move(sights[0].profile);
+}
+
+double value_at_share(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const double place = std::ceil(share * static_cast<double>(values.size()) - 1e-9) - 1;
+  return values[static_cast<std::size_t>(
+      std::clamp(place, 0.0, static_cast<double>(values.size() - 1)))];
 }
 
 double visible_gsd(const VisibleProfile& profile, double pixels) {
@@ -200,8 +211,8 @@ std::vector<SceneSwitch> plan_scene_switches(const std::vector<BuildingSights>& 
     if (own[k].empty())
       plan[k].gsd = finer;
     else
-      plan[k] =
-          judge(std::max(value_at(own[k], options.share), least_step(options) * finer), own[k]);
+      plan[k] = judge(std::max(value_at_share(own[k], options.share), least_step(options) * finer),
+                      own[k]);
   }
   return plan;
 }

@@ -34,6 +34,9 @@ struct LayerSight {
 /// 768th of the building's diagonal, whichever is more. Deterministic, runs in parallel.
 std::vector<LayerSight> measure_sights(const std::vector<Mesh>& layers);
 
+/// One mesh against another in the same way, with samples of this size in metres.
+VisibleProfile measure_profile(const Mesh& mesh, const Mesh& finest, double sample);
+
 /// The smallest gsd from which on the profile stays within `pixels`: between steps by
 /// interpolation, never below the first step; beyond the last as the difference falls with the gsd.
 /// 0: empty.
@@ -55,11 +58,14 @@ const char* to_string(SwitchScope scope);
 struct SwitchOptions {
   SwitchMeasure measure = SwitchMeasure::kVisual;
   SwitchScope scope = SwitchScope::kScene;
-  double visual_error = 8;  ///< pixels: N of PictureDifference
+  double visual_error = 12;  ///< pixels: N of PictureDifference
   double pixel_error = 2;   ///< pixels
   double share = 0.9;       ///< of the buildings whose own bound the scene's g_k keeps
   double rounding = 0;      ///< metres that vertices are moved by; no g is below its share
 };
+
+/// The smallest value that at least this share of the values do not exceed. \pre not empty
+double value_at_share(std::vector<double> values, double share);
 
 /// The scene's g of one layer and what it means for its buildings.
 struct SceneSwitch {

@@ -85,7 +85,7 @@ class Tileset {
     write_file(folder_.string(), {name, bytes});
   }
   Json json;
-  Json& group() { return json["root"]["children"][0]; }
+  Json& group() { return json["root"]["children"][0]["children"][0]; }
   Json& chain() { return group()["children"][0]; }
   Json& leaf() { return chain()["children"][0]; }
 

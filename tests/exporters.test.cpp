@@ -297,7 +297,8 @@ TEST_CASE("a building that may stay coarse for longer than its group gets a tile
   buildings[1].levels[0].layers = {0, 1};
   buildings[1].levels[0].gsd = 0.3;
   const auto files = encode_tileset(buildings);
-  const auto group = nlohmann::json::parse(files.front().bytes)["root"]["children"][0];
+  const auto boxes = nlohmann::json::parse(files.front().bytes)["root"]["children"][0];
+  const auto group = boxes["children"][0];
   const auto &a = group["children"][0], &b = group["children"][1];
   CHECK(a["extras"] == nlohmann::json{{"building", "a"}, {"layer", 1}, {"coarsestLayer", 1}});
   CHECK(b["extras"] == nlohmann::json{{"building", "b"}, {"layer", 1}, {"coarsestLayer", 0}});

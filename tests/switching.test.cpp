@@ -38,6 +38,8 @@ LayerSight chimney_sight(double side, double height) {
   return measure_sights({house_with_chimney(0, 0), house_with_chimney(side, height)})[0];
 }
 
+const SwitchOptions kEight{.visual_error = 8};
+
 /// Differs by 8 pixels at g, in inverse proportion elsewhere.
 LayerSight sight_of(double g) {
   return {false, 4 * g, {{g / 4, 32}, {g / 2, 16}, {g, 8}, {2 * g, 4}}};
@@ -161,7 +163,7 @@ TEST_CASE("layers that are alike have nothing to switch") {
 }
 
 TEST_CASE("own gsds fall by a factor worth a level, whatever was measured") {
-  const std::vector<double> g = own_gsds(building_of(0.5, 0.45), {});
+  const std::vector<double> g = own_gsds(building_of(0.5, 0.45), kEight);
   CHECK(g[1] == Approx(0.45));
   CHECK(g[0] == Approx(1.5 * 0.45));
   const std::vector<double> other = own_gsds(building_of(0.9, 0.3), {.visual_error = 4});
@@ -180,7 +182,7 @@ TEST_CASE("no gsd is below the rounding's share") {
 TEST_CASE("the scene's gsd keeps the bound of nine buildings in ten") {
   std::vector<BuildingSights> buildings;
   for (int i = 1; i <= 20; ++i) buildings.push_back(building_of(0.1 * i, 0.02 * i));
-  const auto plan = plan_scene_switches(buildings, 3, {});
+  const auto plan = plan_scene_switches(buildings, 3, kEight);
   REQUIRE(plan.size() == 3);
   CHECK(plan[2].gsd == 0);
   CHECK(plan[1].gsd == Approx(0.36));
@@ -190,7 +192,7 @@ TEST_CASE("the scene's gsd keeps the bound of nine buildings in ten") {
   CHECK(plan[0].coarse_factor == Approx(2 / 1.8));
   CHECK(plan[0].too_fine == Approx(0.85));
   CHECK(plan[0].fine_factor == Approx(18));
-  const auto low = plan_scene_switches(buildings, 3, {.share = 0.1});
+  const auto low = plan_scene_switches(buildings, 3, {.visual_error = 8, .share = 0.1});
   CHECK(low[0].gsd == Approx(0.2));
   CHECK(low[0].too_coarse == Approx(0.9));
 }
@@ -198,7 +200,7 @@ TEST_CASE("the scene's gsd keeps the bound of nine buildings in ten") {
 TEST_CASE("buildings with nothing to switch do not count, and failed layers are left out") {
   BuildingSights block{{0, 1, 2}, {{true, 0, {}}, {true, 0, {}}, {}}};
   BuildingSights without_finest{{0, 1}, {sight_of(5), {}}};
-  const auto plan = plan_scene_switches({building_of(0.8, 0.2), block, without_finest}, 3, {});
+  const auto plan = plan_scene_switches({building_of(0.8, 0.2), block, without_finest}, 3, kEight);
   CHECK(plan[0].buildings == 2);
   CHECK(plan[1].buildings == 1);
   CHECK(plan[1].gsd == Approx(0.2));

@@ -135,6 +135,39 @@ TEST_CASE("no vertex of a building is farther from its stand-in than the error s
     CHECK(finest.nearest(p + box.origin).distance <= box.error);
 }
 
+TEST_CASE("a box is shown from farther away than the level that it stands for, and by one gsd") {
+  std::vector<ExportBuilding> buildings = street(5);
+  for (ExportLevel& level : buildings[1].levels)
+    for (Vec3& p : level.mesh.vertices) p *= 1.5;
+  for (const std::string measure : {"visual", "deviation"}) {
+    std::vector<StandIn> boxes;
+    for (const ExportBuilding& b : buildings) {
+      boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size()),
+                                   {.measure = measure, .visual_error = 2, .layer_gsd = {}}));
+      CHECK(boxes.back().gsd > 1.2 * b.levels.front().gsd);
+    }
+    std::vector<StandIn> alike = boxes;
+    agree_on_switch(alike, {.layer_gsd = {0.6, 0.3, 0}});
+    agree_on_switch(boxes, {.scope = "building", .layer_gsd = {}});
+    std::set<double> own, shared;
+    for (const StandIn& box : boxes) own.insert(box.gsd);
+    for (const StandIn& box : alike) shared.insert(box.gsd);
+    CHECK(own.size() > 1);
+    REQUIRE(shared.size() == 1);
+    CHECK(*shared.begin() >= *own.begin());
+    CHECK(*shared.begin() > 0.7);
+  }
+}
+
+TEST_CASE("what merging adds to a box counts by its pixels") {
+  const std::vector<ExportBuilding> two = {three_layers("a", Vec3::Zero()),
+                                           three_layers("b", {40, 0, 0})};
+  const StandIn a = stand_in_for(two[0], 0), b = stand_in_for(two[1], 1);
+  const StandIn merged = merge_stand_ins({a, b}, 1)[0];
+  CHECK(merged.gsd == Approx((merged.error - std::max(a.error, b.error)) / 2));
+  CHECK(merged.gsd > std::max(a.gsd, b.gsd));
+}
+
 TEST_CASE("merging stand-ins keeps every building and adds up errors") {
   std::vector<StandIn> boxes;
   for (const ExportBuilding& b : street(12))
@@ -212,7 +245,8 @@ TEST_CASE("below a group each finer level gets a tile, and a lone level its own 
     const std::vector<ExportBuilding> buildings = {house, three_layers("other", Vec3::Zero())};
     std::vector<int> shown;
     TilePlan plan = plan_tiles(buildings);
-    const PlannedTile* tile = &plan.root.children.at(0).children.at(0);
+    const PlannedTile& boxes = plan.root.children.at(0);
+    const PlannedTile* tile = &boxes.children.at(0).children.at(0);
     while (true) {
       shown.push_back(tile->parts.at(0).level->layers.back());
       CHECK(tile->is_finest == tile->children.empty());

@@ -145,10 +145,10 @@ void add_switch_options(CLI::App& app, SwitchOptions& o) {
   app.add_option(
          "--visual-error", o.visual_error,
          "with --switch visual: a change may be as large as a square of this side [pixels], "
-         "default 8")
+         "default 12")
       ->check(CLI::Range(1.0, 32.0));
   app.add_option("--pixel-error", o.pixel_error,
-                 "with --switch deviation, and for the boxes of far tiles: how many pixels a layer "
+                 "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
                  "may be wrong when it is shown, default 2")
       ->check(CLI::Range(0.01, 1e4));
   app.add_option("--switch-share", o.share,
