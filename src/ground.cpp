@@ -23,11 +23,12 @@ constexpr double kLeastCell = 0.25, kMostCell = 1;  // metres
 constexpr double kCellShare = 1.0 / 200;            // of the diagonal
 constexpr double kNoise = 0.15;         // metres of height between neighbours, besides …
 constexpr double kSteepest = 0.4;       // … this slope
-constexpr double kThin = 0.5;           // metres below the ground within which it has nothing
+constexpr double kOverhang = 2;         // metres that a flat roof's rim stands out from its walls
 constexpr double kLeastRim = 0.5;       // of the rim that the ground holds
-constexpr double kMostly = 0.8;         // of the ground's rim that has nothing below
+constexpr double kMostly = 0.8;         // of the ground's rim that has no storey below
 constexpr double kRise = 2;             // metres that a building rises
-constexpr double kLeastBuilt = 0.05;    // of the covered cells that are the building
+constexpr double kLeastBuilt = 0.05;    // of the covered cells that are the building …
+constexpr double kSurelyBuilt = 12;     // … or square metres: a plot may be as large as it likes
 constexpr double kFoot = 1;             // metres above the ground by which walls have come down
 constexpr double kReach = 1.5;          // metres that eaves stand out from their wall
 constexpr double kSmallBlob = 0.05;     // of the largest one's area
@@ -159,15 +160,16 @@ std::vector<char> main_surface(const Raster& r, const std::vector<char>& is_rim)
     if (is_rim[c]) ++rim[surface[c]], ++rim_cells;
   const int best = static_cast<int>(std::max_element(rim.begin(), rim.end()) - rim.begin());
   if (rim_cells == 0 || rim[best] < kLeastRim * rim_cells) return {};
-  // Walls below the rim make it an eave.
-  int thin = 0;
+  // Walls that come down a storey near the rim make it an eave; a skirt is lower.
+  const int reach = static_cast<int>(std::ceil(kOverhang / r.cell));
+  int free = 0;
   for (int c = 0; c < r.size(); ++c) {
     if (!is_rim[c] || surface[c] != best) continue;
     double low = r.low[c];
-    r.around(c, 1, [&](int d) { low = std::min(low, r.low[d]); });
-    thin += low >= r.top[c] - kThin - step;
+    r.around(c, reach, [&](int d) { low = std::min(low, r.low[d]); });
+    free += low > r.top[c] - kRise;
   }
-  if (thin < kMostly * rim[best]) return {};
+  if (free < kMostly * rim[best]) return {};
   std::vector<char> is_ground(r.size(), 0);
   for (int c = 0; c < r.size(); ++c) is_ground[c] = surface[c] == best;
   return is_ground;
@@ -254,7 +256,8 @@ Site survey(const Mesh& mesh) {
     covered += r.is_covered(c);
     built += r.is_covered(c) && r.top[c] > h[c] + kRise;
   }
-  if (built < kLeastBuilt * covered || !has_walls(mesh, r, h, is_built)) return site;
+  const double least = std::min(kLeastBuilt * covered, kSurelyBuilt / (r.cell * r.cell));
+  if (built < least || !has_walls(mesh, r, h, is_built)) return site;
   site.is_building = find_buildings(r, h, is_built, &site.things);
   return site;
 }

@@ -108,3 +108,53 @@ TEST_CASE("points, nothing and numbers that are none do no harm") {
   CHECK(separated(m).mesh.faces.size() == house().faces.size());
   expect_unchanged({});
 }
+
+namespace {
+
+/// A flat-roofed block of 12 × 10 m whose roof stands out on all sides, with a set-back storey on
+/// it.
+Mesh stepped_block(double overhang, double height) {
+  const double o = overhang, h = height;
+  Mesh m = test::box_mesh({0, 0, 0}, {12, 10, h});
+  m = test::join(m, test::box_mesh({-o, -o, h}, {12 + o, 10 + o, h + 0.3}));
+  return test::join(m, test::box_mesh({3, 3, h + 0.3}, {8, 7, h + 3.1}));
+}
+
+/// A plot with a skirt and a plate below it, as watertight reconstructions close their rim.
+Mesh closed_plot(double size, double depth) {
+  Mesh top = terrain(-size / 2, -size / 2, size / 2, size / 2);
+  Mesh box = test::box_mesh({-size / 2, -size / 2, -depth}, {size / 2, size / 2, 0});
+  const auto is_top = [&](const Face& f) {
+    return box.vertices[f[0]].z() == 0 && box.vertices[f[1]].z() == 0 &&
+           box.vertices[f[2]].z() == 0;
+  };
+  std::erase_if(box.faces, is_top);
+  return test::join(top, box);
+}
+
+}  // namespace
+
+TEST_CASE("a flat roof that stands out is no ground, however far") {
+  for (const double overhang : {0.0, 0.3, 0.6, 1.0, 1.5, 1.9})
+    for (const double height : {2.6, 3.2, 7.0}) {
+      INFO(overhang << " m over walls of " << height);
+      expect_unchanged(stepped_block(overhang, height));
+    }
+}
+
+TEST_CASE("a podium with houses on it is no ground") {
+  const Mesh podium = test::box_mesh({-10, -10, -4}, {30, 25, 0});
+  expect_unchanged(test::join(podium, test::join(house(), moved(house(), {15, 5, 0}))));
+}
+
+TEST_CASE("a plot of any size is ground, also with a skirt and a plate below") {
+  for (const double size : {30.0, 48.0, 90.0})
+    for (const double depth : {0.0, 0.5, 1.5}) {
+      INFO(size << " m, " << depth << " m deep");
+      const Mesh plot =
+          depth > 0 ? closed_plot(size, depth) : terrain(-size / 2, -size / 2, size / 2, size / 2);
+      const Source s = separated(test::join(moved(house(), {-4, -3, 0}), plot));
+      REQUIRE(s.left_out.size() == 1);
+      CHECK(surface_area(s.mesh) == Approx(surface_area(house())).epsilon(0.1));
+    }
+}
