@@ -21,9 +21,10 @@ constexpr int kMayExceed = kViews / 10;                 // views
 constexpr double kFinestSample = 0.02;                  // metres
 constexpr double kMostSamples = 768;                    // along a building's diagonal
 constexpr double kMostPixels = 64;  // nobody wants to know how much worse it gets nearby
-constexpr double kVisualStep = 1.5, kDeviationStep = 1.01;  // least factor from layer to layer
-constexpr double kLeastGsd = 1e-4;                          // metres a pixel
-constexpr double kAlike = 0.01;                             // metres
+// Least factors from layer to layer; what is computed from the first differs by 1.5 after rounding.
+constexpr double kVisualStep = 1.501, kDeviationStep = 1.01;
+constexpr double kLeastGsd = 1e-4;  // metres a pixel
+constexpr double kAlike = 0.01;     // metres
 
 bool is_same(const Mesh& a, const Mesh& b) {
   return a.faces == b.faces && a.vertices == b.vertices;

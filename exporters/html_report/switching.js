@@ -114,7 +114,7 @@ function drawDistances(box, width, steps) {
 
 function showSwitching() {
   const box = section('switching'), steps = drawnSteps();
-  box.append(make('p', {}, aboutSwitching()), ...showSwitchTable());
+  box.append(make('p', {}, aboutSwitching()), ...switching.warnings.map((w) => make('p', { class: 'warn' }, w)), ...showSwitchTable());
   if (steps.length < 2) return;
   const frame = make('div', { class: 'plot' });
   box.append(make('h3', {}, 'Drawn against distance'),

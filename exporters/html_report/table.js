@@ -28,6 +28,7 @@ function showProblems() {
     ...buildings.filter((b) => b.failure).map((b) => [b.name, b.failure]),
     ...buildings.flatMap((b) => b.own.filter((l) => l?.failure).map((l) => [`${b.name}, layer ${l.layer}`, l.failure]))];
   const warnings = [...report.coanalysis.warnings.map((w) => ['Co-analysis', w]),
+    ...report.switching.warnings.map((w) => ['Switching', w]),
     ...buildings.flatMap((b) => b.warnings.map((w) => [b.name, w]))];
   const list = (items) => make('ul', {}, ...items.map(([name, text]) =>
     make('li', {}, make('b', {}, name), text.startsWith(`${name}: `) ? text.slice(name.length) : `: ${text}`)));
