@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <map>
+#include <new>
 #include <numeric>
 #include <set>
 #include <tuple>
 
+#include "mesh_io_files.h"
 #include "mesh_io_formats.h"
 #include "parallel.h"
 #include "stopwatch.h"
@@ -19,75 +19,27 @@
 namespace colod {
 
 namespace fs = std::filesystem;
+using mesh_io::is_usable;
+using mesh_io::lower;
 using mesh_io::RawFile;
 
 namespace {
 
-constexpr const char* kExtensions[] = {".obj",  ".ply", ".off", ".stl",
-                                       ".gltf", ".glb", ".xyz", ".pwn"};
-constexpr double kFarthest = 1e12;  // beyond it squares and products of coordinates lose all digits
-
-std::string lower(std::string s) {
-  for (char& c : s)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return s;
-}
-
-bool is_supported(const fs::path& path) {
-  const std::string e = lower(path.extension().string());
-  return std::find(std::begin(kExtensions), std::end(kExtensions), e) != std::end(kExtensions);
-}
-
-/// The files to read, in order and without repetition.
-std::vector<std::string> list_files(const std::vector<std::string>& inputs) {
-  std::vector<std::string> files;
-  for (const std::string& input : inputs) {
-    std::error_code error;
-    if (fs::is_directory(input, error)) {
-      std::vector<std::string> found;
-      for (const fs::directory_entry& entry : fs::directory_iterator(input, error))
-        if (!entry.is_directory() && is_supported(entry.path()))
-          found.push_back(entry.path().string());
-      if (error) throw Error(Stage::kInput, input, error.message());
-      if (found.empty())
-        throw Error(Stage::kInput, input,
-                    "the folder holds no file that can be read (obj, ply, off, stl, gltf, glb, "
-                    "xyz, pwn)");
-      std::sort(found.begin(), found.end());
-      files.insert(files.end(), found.begin(), found.end());
-    } else if (fs::exists(input, error)) {
-      files.push_back(input);
-    } else {
-      throw Error(Stage::kInput, input, "no such file or folder");
-    }
-  }
-  std::set<std::string> seen;
-  std::erase_if(files, [&](const std::string& f) {
-    return !seen.insert(fs::path(f).lexically_normal().string()).second;
-  });
-  return files;
-}
-
-std::string read_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) mesh_io::fail(path, "cannot be opened");
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad()) mesh_io::fail(path, "cannot be read to its end");
-  if (bytes.empty()) mesh_io::fail(path, "the file is empty");
-  if (bytes.size() > (std::size_t{1} << 31)) mesh_io::fail(path, "larger than 2 GiB");
-  return bytes;
-}
-
-RawFile read_raw(const std::string& path, int coarser) {
+/// Text formats are read without their byte order mark.
+RawFile read_raw(const std::string& path, const ReadOptions& options) {
   const std::string e = lower(fs::path(path).extension().string());
-  if (!is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
-  const std::string bytes = read_bytes(path);
+  if (const std::string advice = mesh_io::foreign_advice(path); !advice.empty())
+    mesh_io::fail(path, advice);
+  if (!mesh_io::is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
+  std::string bytes = mesh_io::read_bytes(path, options.input_memory);
+  if (e == ".stl") return mesh_io::read_stl(path, bytes);
+  if (e == ".glb") return mesh_io::read_gltf(path, bytes, options.coarser);
+  bytes = mesh_io::as_text(std::move(bytes));
   if (e == ".obj") return mesh_io::read_obj(path, bytes);
   if (e == ".ply") return mesh_io::read_ply(path, bytes);
   if (e == ".off") return mesh_io::read_off(path, bytes);
-  if (e == ".stl") return mesh_io::read_stl(path, bytes);
-  if (e == ".xyz" || e == ".pwn") return mesh_io::read_xyz(path, bytes, e == ".pwn");
-  return mesh_io::read_gltf(path, bytes, coarser);
+  if (e == ".gltf") return mesh_io::read_gltf(path, bytes, options.coarser);
+  return mesh_io::read_points(path, bytes, e == ".pwn");
 }
 
 std::string sanitize(const std::string& name) {
@@ -104,8 +56,6 @@ std::string sanitize(const std::string& name) {
   return safe;
 }
 
-bool is_usable(const Vec3& p) { return (p.array().abs() <= kFarthest).all(); }
-
 void check_indices(const std::string& path, const RawFile& raw) {
   const int n = static_cast<int>(raw.points.size());
   for (int f = 0; f < raw.face_count(); ++f)
@@ -120,11 +70,10 @@ void check_indices(const std::string& path, const RawFile& raw) {
 Vec3 to_z_up(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
 
 /// Units, axes and origin; normals made unit length. Unusable points stay as they are.
-void place(RawFile& raw, const ReadOptions& options) {
-  const bool turns = options.is_y_up && !raw.is_turned;
-  for (Vec3& p : raw.points) p = (turns ? to_z_up(p) : p) * options.unit + raw.origin;
+void place(RawFile& raw, const mesh_io::Reading& how) {
+  for (Vec3& p : raw.points) p = (how.is_y_up ? to_z_up(p) : p) * how.unit + raw.origin;
   for (Vec3& n : raw.normals) {
-    if (turns) n = to_z_up(n);
+    if (how.is_y_up) n = to_z_up(n);
     const double length = n.norm();
     n = length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(Vec3::Zero());
   }
@@ -216,26 +165,6 @@ bool has_area(const Mesh& m) {
                      [&](const Face& f) { return face_area(m, f) > 0; });
 }
 
-Source read_cloud(const std::string& path, const RawFile& raw) {
-  Source s;
-  const bool has_normals = raw.normals.size() == raw.points.size();
-  std::size_t dropped = 0;
-  for (std::size_t i = 0; i < raw.points.size(); ++i) {
-    const bool is_good = is_usable(raw.points[i]) && (!has_normals || raw.normals[i].norm() > 0);
-    if (!is_good && ++dropped) continue;
-    s.cloud.points.push_back(raw.points[i]);
-    if (has_normals) s.cloud.normals.push_back(raw.normals[i]);
-  }
-  if (s.cloud.points.size() < 3)
-    mesh_io::fail(path, "neither a face nor 3 points with usable coordinates");
-  if (dropped > 0)
-    s.warnings.push_back(
-        std::to_string(dropped) +
-        " points left out: coordinate or normal not finite, or normal of no length");
-  if (!has_normals) s.warnings.push_back(mesh_io::estimate_normals(s.cloud));
-  return s;
-}
-
 /// Triangle → building, and the buildings' names after the file's stem ("" for the whole file).
 std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
                        std::vector<std::string>& names) {
@@ -262,13 +191,14 @@ std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
 
 /// Everything a file holds, split as asked. Throws when nothing in it is usable.
 std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
-  RawFile raw = read_raw(path, options.coarser);
+  RawFile raw = read_raw(path, options);
   check_indices(path, raw);
-  place(raw, options);
+  const mesh_io::Reading how = mesh_io::judge(path, raw, options);
+  place(raw, how);
   std::vector<Source> sources;
   std::vector<std::string> names = {""};
   if (raw.face_count() == 0) {
-    sources.push_back(read_cloud(path, raw));
+    sources.push_back(mesh_io::read_cloud(path, raw));
   } else {
     if (raw.is_soup) {
       const std::vector<int> first = weld(raw.points);
@@ -288,13 +218,16 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
   std::vector<Source> usable;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Source& s = sources[i];
+    if (s.is_mesh()) mesh_io::leave_out_strays(s);
     if (s.cloud.points.empty() && !has_area(s.mesh)) continue;
     s.path = path;
     s.name = sanitize(names[i].empty() ? stem : stem + "_" + names[i]);
     s.warnings.insert(s.warnings.begin(), raw.warnings.begin(), raw.warnings.end());
     usable.push_back(std::move(s));
   }
-  if (usable.empty())
+  if (!usable.empty())
+    usable[0].warnings.insert(usable[0].warnings.begin(), how.doubts.begin(), how.doubts.end());
+  else
     mesh_io::fail(path, "none of " + std::to_string(raw.face_count()) +
                             " faces has a positive area and finite coordinates");
   return usable;
@@ -327,7 +260,8 @@ void make_unique(std::vector<Entry>& entries) {
 }  // namespace
 
 Inventory take_inventory(const std::vector<std::string>& inputs, const ReadOptions& options) {
-  const std::vector<std::string> paths = list_files(inputs);
+  mesh_io::InputList list = mesh_io::list_files(inputs, options.is_recursive);
+  const std::vector<std::string>& paths = list.files;
   std::vector<std::vector<std::string>> found(paths.size());
   std::vector<std::string> problem(paths.size());
   parallel_for(paths.size(), [&](std::size_t i) {
@@ -335,9 +269,14 @@ Inventory take_inventory(const std::vector<std::string>& inputs, const ReadOptio
       for (const Source& s : read_file(paths[i], options)) found[i].push_back(s.name);
     } catch (const Error& e) {
       problem[i] = std::string(e.what()).substr(e.item.size() + 2);
+    } catch (const std::bad_alloc&) {
+      problem[i] = "needs more memory than there is: fewer --threads, or a smaller file";
+    } catch (const std::exception& e) {  // a library gave up: this file's problem only
+      problem[i] = std::string("cannot be read: ") + e.what();
     }
   });
   Inventory inventory;
+  inventory.warnings = std::move(list.warnings);
   std::vector<Entry> entries;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (found[i].empty()) {

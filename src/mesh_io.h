@@ -1,6 +1,7 @@
 // Room 1: files → Sources. The only room that knows file formats that come in.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,22 @@ enum class Split {
   kComponent
 };  ///< how a file with several buildings is taken apart
 
+enum class Up {
+  kUnsaid,  ///< z, with a warning where what slopes tells that it is y
+  kZ,
+  kY,
+  kAuto  ///< decided by what slopes and by the program that wrote the file, and said
+};       ///< the axis of a file that points up
+
 struct ReadOptions {
   Split split = Split::kAuto;  ///< auto: glTF scene nodes and OBJ `o` objects when there are
                                ///< several; otherwise one building a file
-  bool is_y_up = false;        ///< --up y; glTF is always y up and turned by itself
-  double unit = 1.0;           ///< metres per unit of the file (--unit m|cm|mm|ft)
+  Up up = Up::kUnsaid;         ///< glTF is always y up and turned by itself
+  std::optional<double> unit =
+      std::nullopt;            ///< metres per unit of the file, of glTF too; none: metres, with a
+                               ///< warning where the size of what stands there tells otherwise
+  double input_memory = 2048;  ///< MiB that one file may take; checked before it is read
+  bool is_recursive = false;   ///< folders with their subfolders
   int coarser = 0;  ///< glTF: that many levels of MSFT_lod down from the finest; an error
                     ///< where there are fewer
 };
@@ -45,6 +57,7 @@ struct InputFile {
 struct Inventory {
   std::vector<InputFile> files;
   std::vector<ReadFailure> failures;
+  std::vector<std::string> warnings;  ///< of the inputs as a whole: what was passed over
 
   std::size_t building_count() const {
     std::size_t count = 0;
@@ -61,13 +74,14 @@ Inventory take_inventory(const std::vector<std::string>& inputs, const ReadOptio
 /// cannot be read any more or no longer holds as many.
 std::vector<Source> read_file(const InputFile& file, const ReadOptions& options = {});
 
-/// Reads every INPUT: a file, or a folder (each supported file in it, not recursive, sorted by
-/// name). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB (Draco too),
-/// XYZ/PWN points. Validates: coordinates finite (faces that use bad ones are dropped with a
-/// warning; points too), indices in range (otherwise a failure), at least one face of positive area
-/// or 3 points; polygons are fan-triangulated (concave ones by ear/CDT). Clouds without normals get
-/// estimated and oriented ones, with a warning. Throws Error{kInput} only when an INPUT does not
-/// exist or a folder holds no supported file.
+/// Reads every INPUT: a file, or a folder (each supported file in it, sorted by name; subfolders
+/// with is_recursive). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB
+/// (Draco too), points as XYZ, PWN, PTS, ASC, CSV, TXT. Validates: coordinates finite (faces that
+/// use bad ones are dropped with a warning; points too), indices in range (otherwise a failure), at
+/// least one face of positive area or 3 points; polygons are fan-triangulated (concave ones by
+/// ear/CDT). Small pieces absurdly far from the rest are left out. Clouds without normals get
+/// estimated and oriented ones, with a warning. Coordinates that are degrees are a failure. Throws
+/// Error{kInput} only when an INPUT does not exist or a folder holds no supported file.
 ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options = {});
 
 /// One file as one mesh, all its objects together, for `colod eval` and `colod info`. Throws

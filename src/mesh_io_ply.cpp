@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "mesh_io_files.h"
 #include "mesh_io_formats.h"
 
 namespace colod::mesh_io {
@@ -38,6 +39,7 @@ struct Header {
   std::vector<Element> elements;
   std::size_t body = 0;  // where the data start
   int lines = 0;
+  std::string remarks;  // its comments
 };
 
 bool parse_type(std::string_view name, Type& type) {
@@ -55,38 +57,40 @@ bool parse_type(std::string_view name, Type& type) {
 
 Property read_property(Lines& lines) {
   Property p;
-  std::string_view type = lines.token();
+  std::string type = lower(std::string(lines.token()));
   if (type == "list") {
     p.is_list = true;
-    if (!parse_type(lines.token(), p.count)) lines.fail("unknown type of a list's length");
-    type = lines.token();
+    if (!parse_type(lower(std::string(lines.token())), p.count))
+      lines.fail("unknown type of a list's length");
+    type = lower(std::string(lines.token()));
   }
-  if (!parse_type(type, p.type)) lines.fail("unknown type '" + std::string(type) + "'");
-  p.name = lines.token();
+  if (!parse_type(type, p.type)) lines.fail("unknown type '" + type.substr(0, 40) + "'");
+  p.name = lower(std::string(lines.token()));
   if (p.name.empty()) lines.fail("a property without a name");
   return p;
 }
 
 void read_format(Lines& lines, Header& header) {
-  const std::string_view format = lines.token();
+  const std::string format = lower(std::string(lines.token()));
   header.is_text = format == "ascii";
   header.is_big_endian = format == "binary_big_endian";
   if (!header.is_text && !header.is_big_endian && format != "binary_little_endian")
-    lines.fail("unknown format '" + std::string(format.substr(0, 40)) + "'");
+    lines.fail("unknown format '" + format.substr(0, 40) + "'");
 }
 
 Header read_header(const std::string& path, const std::string& bytes) {
   Header header;
   Lines lines(path, bytes);
-  if (!lines.next() || lines.token() != "ply") fail(path, "line 1: this is no PLY header");
+  if (!lines.next() || lower(std::string(lines.token())) != "ply")
+    fail(path, "line 1: this is no PLY header");
   bool has_format = false;
   while (lines.next()) {
-    const std::string_view key = lines.token();
+    const std::string key = lower(std::string(lines.token()));
     if (key == "format") {
       read_format(lines, header);
       has_format = true;
     } else if (key == "element") {
-      header.elements.push_back({std::string(lines.token()), lines.integer(), {}});
+      header.elements.push_back({lower(std::string(lines.token())), lines.integer(), {}});
       if (header.elements.back().count < 0) lines.fail("a count is negative");
     } else if (key == "property") {
       if (header.elements.empty()) lines.fail("a property before the first element");
@@ -96,8 +100,10 @@ Header read_header(const std::string& path, const std::string& bytes) {
       header.body = bytes.size() - lines.bytes_left();
       header.lines = lines.line_number();
       return header;
-    } else if (key != "comment" && key != "obj_info") {
-      lines.fail("unknown word '" + std::string(key.substr(0, 40)) + "' in the header");
+    } else if (key == "comment" || key == "obj_info") {
+      header.remarks += std::string(lines.rest().substr(0, 200)) + "\n";
+    } else {
+      lines.fail("unknown word '" + key.substr(0, 40) + "' in the header");
     }
   }
   lines.fail("truncated: `end_header` is missing");
@@ -250,6 +256,7 @@ RawFile read_ply(const std::string& path, const std::string& bytes) {
   const Header header = read_header(path, bytes);
   Body body(path, bytes, header);
   RawFile raw;
+  raw.remarks = header.remarks;
   bool has_vertices = false;
   for (const Element& element : header.elements) {
     if (element.name == "vertex") {

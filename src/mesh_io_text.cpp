@@ -1,22 +1,29 @@
-// Based on: the formats as their writers use them (Wavefront OBJ appendix B1, Geomview OFF, the
-// STL of 3D Systems, CGAL's XYZ and PWN).
+// Based on: the formats as their writers use them (Wavefront OBJ appendix B1, Geomview OFF).
 // Differs: no library. Debian's tinyobjloader reads `nan` and `v 1 2` as zeros and CGAL's readers
 // name no line; here every number goes through std::from_chars (exact, no locale) and every failure
 // names its line.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <map>
 
+#include "mesh_io_files.h"
 #include "mesh_io_formats.h"
 
 namespace colod::mesh_io {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// The number a token spells; NaN for `nan`, `1.#QNAN` and overflow. False: not a number.
+/// Does the first line of a text end in CR alone?
+bool ends_in_lone_cr(std::string_view text) {
+  const std::size_t end = text.find_first_of("\r\n");
+  return end != text.npos && text[end] == '\r' && (end + 1 == text.size() || text[end + 1] != '\n');
+}
+
+}  // namespace
+
 bool parse_number(std::string_view token, double& value) {
   if (!token.empty() && token.front() == '+') token.remove_prefix(1);
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
@@ -29,39 +36,84 @@ bool parse_number(std::string_view token, double& value) {
   return *end == '#';  // what Microsoft's printf makes of NaN
 }
 
-}  // namespace
-
 void fail(const std::string& path, const std::string& cause) {
   throw Error(Stage::kInput, path, cause);
 }
+
+std::string head_remarks(std::string_view text) {
+  constexpr std::size_t kHead = 2000;
+  std::string remarks;
+  text = text.substr(0, kHead);
+  for (std::size_t at = text.find('#'); at != text.npos; at = text.find('#', at)) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    remarks += std::string(text.substr(at, end - at)) + "\n";
+    at = end;
+  }
+  return remarks;
+}
+
+Lines::Lines(std::string path, std::string_view text, int lines_before)
+    : path_(std::move(path)),
+      text_(text),
+      line_number_(lines_before),
+      has_lone_cr_(ends_in_lone_cr(text)) {}
 
 void Lines::fail(const std::string& cause) const {
   mesh_io::fail(path_, "line " + std::to_string(line_number_) + ": " + cause);
 }
 
+bool Lines::take_line() {
+  if (text_.empty()) return false;
+  const std::size_t end = std::min(text_.find_first_of("\r\n"), text_.size());
+  line_ = text_.substr(0, end);
+  const bool is_pair = !has_lone_cr_ && text_.substr(end).starts_with("\r\n");
+  text_.remove_prefix(std::min(end + (is_pair ? 2 : 1), text_.size()));
+  while (!line_.empty() && is_blank(line_.back())) line_.remove_suffix(1);
+  ++line_number_;
+  return true;
+}
+
 bool Lines::next() {
-  while (!text_.empty()) {
-    const std::size_t end = text_.find('\n');
-    line_ = text_.substr(0, end);
-    text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
-    ++line_number_;
-    if (has_token() && line_.front() != '#') return true;
-  }
+  while (take_line())
+    if (has_token()) return true;
   return false;
 }
 
 bool Lines::has_token() {
-  while (!line_.empty() && is_blank(line_.front())) line_.remove_prefix(1);
-  return !line_.empty();
+  for (;;) {
+    while (!line_.empty() && is_blank(line_.front())) line_.remove_prefix(1);
+    if (line_.starts_with('#')) line_ = {};
+    if (!has_continuation_ || line_ != "\\") return !line_.empty();
+    line_ = {};
+    if (!take_line()) return false;
+  }
 }
 
 std::string_view Lines::token() {
   has_token();
   std::size_t n = 0;
   while (n < line_.size() && !is_blank(line_[n])) ++n;
-  const std::string_view result = line_.substr(0, n);
+  std::string_view result = line_.substr(0, n);
   line_.remove_prefix(n);
+  if (has_continuation_ && line_.empty() && result.ends_with('\\')) {
+    line_ = result.substr(result.size() - 1);  // what is left says that the next line belongs here
+    result.remove_suffix(1);
+  }
   return result;
+}
+
+void Lines::move_on() {
+  if (!has_token() && !next()) fail("truncated: a number is missing");
+}
+
+double Lines::number_across() {
+  move_on();
+  return number();
+}
+
+int Lines::integer_across() {
+  move_on();
+  return integer();
 }
 
 double Lines::number() {
@@ -86,6 +138,12 @@ namespace {
 
 Vec3 read_vec3(Lines& lines) {
   const double x = lines.number(), y = lines.number(), z = lines.number();
+  return {x, y, z};
+}
+
+/// One that may be broken over several lines.
+Vec3 read_vec3_across(Lines& lines) {
+  const double x = lines.number_across(), y = lines.number_across(), z = lines.number_across();
   return {x, y, z};
 }
 
@@ -121,15 +179,14 @@ int obj_corner(Lines& lines, std::string_view token, int points) {
 }  // namespace
 
 RawFile read_obj(const std::string& path, const std::string& bytes) {
-  std::string joined = bytes;
-  for (std::size_t at = joined.find("\\\n"); at != joined.npos; at = joined.find("\\\n", at))
-    joined[at] = joined[at + 1] = ' ';
   RawFile raw;
+  raw.remarks = head_remarks(bytes);
   Numbering groups, objects;
   int group = -1, object = -1, short_faces = 0, first_short = 0;
-  Lines lines(path, joined);
+  Lines lines(path, bytes);
+  lines.allow_continuation();
   while (lines.next()) {
-    const std::string_view key = lines.token();
+    const std::string key = lower(std::string(lines.token()));
     if (key == "v") {
       raw.points.push_back(read_vec3(lines));
     } else if (key == "f") {
@@ -164,22 +221,26 @@ RawFile read_obj(const std::string& path, const std::string& bytes) {
 RawFile read_off(const std::string& path, const std::string& bytes) {
   Lines lines(path, bytes);
   if (!lines.next()) fail(path, "the file is empty");
-  std::string_view key = lines.token();
-  if (key.size() < 3 || key.substr(key.size() - 3) != "OFF") lines.fail("this is no OFF header");
+  std::string key(lines.token());
+  if (key == "off" || key == "coff") key = "OFF";
+  if (!key.ends_with("OFF")) lines.fail("this is no OFF header");
   const bool has_normals = key.find('N') != key.npos;
   if (key.find('4') != key.npos || key.find('n') != key.npos)
     lines.fail("only three-dimensional OFF is read");
   if (lines.has_token() && lines.rest().substr(0, 6) == "BINARY")
     lines.fail("binary OFF is not read");
   if (!lines.has_token() && !lines.next()) lines.fail("truncated: the counts are missing");
-  const int points = lines.integer(), faces = lines.integer();
+  const int points = lines.integer_across();
+  const bool is_broken = !lines.has_token();  // then the count of edges has a line of its own, too
+  const int faces = lines.integer_across();
+  if (is_broken) lines.integer_across();
   if (points < 0 || faces < 0) lines.fail("a count is negative");
   RawFile raw;
   for (int i = 0; i < points; ++i) {
     if (!lines.next())
       lines.fail("truncated: " + std::to_string(i) + " of " + std::to_string(points) + " vertices");
-    raw.points.push_back(read_vec3(lines));
-    if (has_normals) raw.normals.push_back(read_vec3(lines));
+    raw.points.push_back(read_vec3_across(lines));
+    if (has_normals) raw.normals.push_back(read_vec3_across(lines));
   }
   for (int f = 0; f < faces; ++f) {
     if (!lines.next())
@@ -188,92 +249,8 @@ RawFile read_off(const std::string& path, const std::string& bytes) {
     if (corners < 0) lines.fail("a face with a negative number of corners");
     if (corners < 3) continue;
     raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
-    for (int c = 0; c < corners; ++c) raw.corners.push_back(lines.integer());
+    for (int c = 0; c < corners; ++c) raw.corners.push_back(lines.integer_across());
   }
-  return raw;
-}
-
-namespace {
-
-RawFile read_stl_binary(const std::string& path, const std::string& bytes) {
-  std::uint32_t faces = 0;
-  if (bytes.size() < 84) fail(path, "truncated: an STL header takes 84 bytes");
-  std::memcpy(&faces, bytes.data() + 80, 4);
-  const std::size_t present = (bytes.size() - 84) / 50;
-  if (present < faces)
-    fail(path, "truncated at face " + std::to_string(present) + " of " + std::to_string(faces));
-  RawFile raw;
-  raw.is_soup = true;
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    float v[9];
-    std::memcpy(v, bytes.data() + 84 + 50 * std::size_t{f} + 12, sizeof v);
-    raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
-    for (int c = 0; c < 3; ++c) {
-      raw.corners.push_back(static_cast<int>(raw.points.size()));
-      raw.points.emplace_back(v[3 * c], v[3 * c + 1], v[3 * c + 2]);
-    }
-  }
-  return raw;
-}
-
-RawFile read_stl_text(const std::string& path, const std::string& bytes) {
-  RawFile raw;
-  raw.is_soup = true;
-  Lines lines(path, bytes);
-  bool is_ended = false;
-  int corners = 0;
-  while (lines.next()) {
-    const std::string_view key = lines.token();
-    is_ended = key == "endsolid";
-    if (key == "vertex") {
-      if (corners++ == 0) raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
-      raw.corners.push_back(static_cast<int>(raw.points.size()));
-      raw.points.push_back(read_vec3(lines));
-    } else if (key == "endloop") {
-      if (corners != 3) lines.fail("a facet of " + std::to_string(corners) + " corners");
-      corners = 0;
-    }
-  }
-  if (!is_ended) lines.fail("truncated: `endsolid` is missing");
-  return raw;
-}
-
-}  // namespace
-
-RawFile read_stl(const std::string& path, const std::string& bytes) {
-  std::uint32_t faces = 0;
-  if (bytes.size() >= 84) std::memcpy(&faces, bytes.data() + 80, 4);
-  const bool fits = bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t{faces};
-  const bool is_text = bytes.compare(0, 5, "solid") == 0 &&
-                       std::string_view(bytes).substr(0, 512).find('\0') == std::string_view::npos;
-  return !fits && is_text ? read_stl_text(path, bytes) : read_stl_binary(path, bytes);
-}
-
-RawFile read_xyz(const std::string& path, const std::string& bytes, bool is_pwn) {
-  RawFile raw;
-  Lines lines(path, bytes);
-  bool is_first = true, has_normals = false, has_colours = false;
-  while (lines.next()) {
-    if (lines.rest().substr(0, 2) == "//") continue;
-    double v[6];
-    int n = 0;
-    while (n < 6 && lines.has_token()) v[n++] = lines.number();
-    if (is_first && n == 1) continue;  // a count
-    if (n < 3 || (is_pwn && n < 6))
-      lines.fail("a point needs " + std::string(is_pwn ? "6" : "3") + " numbers, found " +
-                 std::to_string(n));
-    const double length = n == 6 ? Vec3(v[3], v[4], v[5]).norm() : 0;
-    if (is_first) {
-      has_normals = is_pwn || std::abs(length - 1) < 0.01;
-      has_colours = n >= 6 && !has_normals;
-    }
-    is_first = false;
-    raw.points.emplace_back(v[0], v[1], v[2]);
-    if (!has_normals) continue;
-    if (n < 6) lines.fail("a normal is missing");
-    raw.normals.emplace_back(v[3], v[4], v[5]);
-  }
-  if (has_colours) raw.warnings.push_back("columns 4 to 6 are no unit normals and were left out");
   return raw;
 }
 

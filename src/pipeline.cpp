@@ -24,7 +24,9 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 
 constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
 constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
-constexpr double kVolumeChange = 0.2;      // of the finer layer's volume
+constexpr const char* kEmptyLayer =
+    "came out empty: too small a part of the input's box, or no body; see the input's size";
+constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -84,6 +86,7 @@ void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, 
                                       joined);
     planes.insert(planes.end(), joined.begin(), joined.end());
     layer.mesh = std::move(result.mesh);
+    if (layer.mesh.triangles.empty()) layer.failure = kEmptyLayer;
     for (const std::string& w : result.warnings)
       b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
   } catch (const Error& e) {
@@ -348,6 +351,11 @@ void for_each_source(const Inventory& inventory, const Reader& read,
       sources = read(f);
     } catch (const Error& e) {
       problem = e;
+    } catch (const std::exception& e) {  // a library gave up, or memory
+      problem = Error(Stage::kInput, file.path, std::string("cannot be read: ") + e.what());
+    }
+    if (problem) {
+      sources.resize(file.names.size());
       for (std::size_t i = 0; i < sources.size(); ++i)
         sources[i].name = file.names[i], sources[i].path = file.path;
     }
@@ -361,6 +369,7 @@ Scene build_scene(const Inventory& inventory, const Reader& read, const Options&
                   Depot& depot, const Progress& progress, const Prior* prior) {
   Scene scene;
   scene.failures = inventory.failures;
+  scene.warnings = inventory.warnings;
   scene.buildings.resize(inventory.building_count());
   std::mutex mutex;
   int done = 0;
@@ -387,7 +396,7 @@ Scene build_scene(const Inventory& inventory, const Reader& read, const Options&
 }
 
 Scene build_scene(ReadResult input, const Options& options, const Prior* prior) {
-  Inventory inventory{{}, std::move(input.failures)};
+  Inventory inventory{{}, std::move(input.failures), {}};
   for (const Source& s : input.sources) inventory.files.push_back({s.path, {s.name}});
   const Reader take = [&](std::size_t i) {
     std::vector<Source> one;

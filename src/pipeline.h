@@ -76,11 +76,13 @@ struct Switching {
 struct Scene {
   std::vector<Building> buildings;    ///< in the order of the input
   std::vector<ReadFailure> failures;  ///< inputs that could not be read
+  std::vector<std::string> warnings;  ///< of the scene as a whole, one line each
   Selection selection;
   Clustering clustering;
   Switching switching;
   double coanalysis_seconds = 0;
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
+  std::string tileset_failure;               ///< why there is none; empty: there is one
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
   bool has_prior = false;  ///< layers come from another scene that was analysed before
 };

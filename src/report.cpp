@@ -159,12 +159,15 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   json["switching"] = switching_json(scene.switching);
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
+  json["warnings"] = scene.warnings;
   json["buildings"] = Json::array();
   for (const Building& b : scene.buildings)
     json["buildings"].push_back(building_json(b, scene.has_prior));
   json["failures"] = Json::array();
   for (const ReadFailure& f : scene.failures)
     json["failures"].push_back({{"source", f.path}, {"message", f.message}});
+  if (!scene.tileset_failure.empty())
+    json["failures"].push_back({{"source", "tileset.json"}, {"message", scene.tileset_failure}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -240,7 +240,7 @@ TEST_CASE("units and the up axis are turned into metres and z up") {
   const Source cm = only(read_bytes("a.obj", obj_text(kHouse), {.unit = 0.01}));
   CHECK(signed_volume(cm.mesh) == Approx(1e-6 * signed_volume(kHouse)));
   const Source up =
-      only(read_bytes("a.obj", "v 0 0 0\nv 1 0 0\nv 0 5 0\nf 1 2 3\n", {.is_y_up = true}));
+      only(read_bytes("a.obj", "v 0 0 0\nv 1 0 0\nv 0 5 0\nf 1 2 3\n", {.up = Up::kY}));
   CHECK((up.mesh.vertices[2] - Vec3(0, 0, 5)).norm() == 0);
   CHECK(face_cross(up.mesh, up.mesh.faces[0]).y() < 0);
 }

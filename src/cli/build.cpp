@@ -69,6 +69,7 @@ class Judge : public Depot {
 int build(const BuildArguments& a) {
   const auto start = std::chrono::steady_clock::now();
   validate(a.options);
+  check_place(a.output);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth);
@@ -99,6 +100,7 @@ Run add_build(CLI::App& app) {
   app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
   add_output_options(app, a->output);
   add_input_options(app, a->read);
+  add_folder_options(app, a->read);
   add_pipeline_options(app, a->options);
   add_prior_option(app, a->prior);
   app.add_option("--truth", a->truth,

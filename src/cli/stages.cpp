@@ -39,6 +39,7 @@ int segment(const StageArguments& a) {
   const Inventory inventory = take_inventory(a.inputs, a.read);
   Scene problems;
   problems.failures = inventory.failures;
+  problems.warnings = inventory.warnings;
   problems.buildings.resize(inventory.building_count());
   Store store(a.scene, true);
   store.put_options(a.options);
@@ -170,6 +171,7 @@ void bring_source(Building& b, Store& store, std::mutex& mutex) {
 
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
+  check_place(a.output);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   std::vector<Store> stores = open_all(a.inputs);
@@ -211,6 +213,7 @@ Run add_segment(CLI::App& app) {
   app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
   app.add_option("-o,--out", a->scene, "scene file to write or go on with")->required();
   add_input_options(app, a->read);
+  add_folder_options(app, a->read);
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
   return [a] { return segment(*a); };
