@@ -1,4 +1,4 @@
-// Based on: PROJ 9's CRS to CRS operations; ContextCapture's metadata.xml, OpenDroneMap's
+// Based on: PROJ 9's CRS to CRS operations; pugixml; ContextCapture's metadata.xml, OpenDroneMap's
 // odm_georeferencing_model_geo.txt, Pix4D's offset and prj files.
 // Differs: never an invented place, and no ballpark operation without a warning.
 // Notation: phi, lambda latitude and longitude in radians; e2 the ellipsoid's eccentricity squared.
@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <pugixml.hpp>
 #include <regex>
 #include <sstream>
 
@@ -26,6 +27,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kGeocentric = "EPSG:4978";
+constexpr std::uintmax_t kLargestSidecar = 1 << 20;  // bytes
+constexpr std::size_t kLongestCrs = 16384;           // WKT of compound systems has some 5,000
+constexpr std::size_t kLongestQuote = 80;
 
 /// "a,b" or "a,b,c", blanks allowed around; nothing when it is anything else.
 std::optional<std::vector<double>> numbers(const std::string& text) {
@@ -51,28 +55,56 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 [[noreturn]] void refuse(const fs::path& path, const std::string& cause) {
   throw Error(Stage::kInput, path.string(), cause);
 }
 
-std::string element(const std::string& xml, const std::string& name) {
-  const std::regex pattern("<" + name + "[^>]*>([^<]*)</" + name + ">");
-  std::smatch match;
-  return std::regex_search(xml, match, pattern) ? trimmed(match[1]) : "";
+/// False also for links that lead to themselves.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+/// Files beside the input are small; anything else under their names is refused unread.
+std::string slurp(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) refuse(path, "is no regular file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error || size > kLargestSidecar) refuse(path, "is larger than a mebibyte");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) refuse(path, "cannot be opened");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A text of any length for a message.
+std::string shortened(const std::string& text) {
+  return text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "…";
+}
+
+/// A system's name or definition; a longer one is none.
+const std::string& checked_crs(const fs::path& path, const std::string& crs) {
+  if (crs.size() > kLongestCrs)
+    refuse(path, "a reference system of " + std::to_string(crs.size()) + " characters");
+  return crs;
 }
 
 std::optional<Georeference> from_metadata_xml(const fs::path& path) {
-  const std::string xml = slurp(path), srs = element(xml, "SRS"), at = element(xml, "SRSOrigin");
+  const std::string text = slurp(path);
+  pugi::xml_document xml;
+  if (const pugi::xml_parse_result result = xml.load_buffer(text.data(), text.size()); !result)
+    refuse(path, "is no XML: " + std::string(result.description()) + " at byte " +
+                     std::to_string(result.offset));
+  const auto element = [&xml](std::string_view name) {
+    const pugi::xml_node found = xml.find_node([&](pugi::xml_node n) { return n.name() == name; });
+    return trimmed(found.child_value());
+  };
+  const std::string srs = element("SRS"), at = element("SRSOrigin");
   if (srs.empty() || srs.starts_with("LOCAL")) return {};  // another program's, or no place
-  Georeference out{srs, Vec3::Zero(), path.string()};
+  Georeference out{checked_crs(path, srs), Vec3::Zero(), path.string()};
   if (at.empty()) return out;
   const auto values = numbers(at);
-  if (!values || values->size() != 3) refuse(path, "SRSOrigin is not three numbers: " + at);
+  if (!values || values->size() != 3)
+    refuse(path, "SRSOrigin is not three numbers: " + shortened(at));
   out.offset = {(*values)[0], (*values)[1], (*values)[2]};
   return out;
 }
@@ -82,7 +114,8 @@ Georeference from_odm(const fs::path& path) {
   std::istringstream in(slurp(path));
   std::string line;
   std::getline(in, line);
-  static const std::regex kUtm("\\s*WGS84 UTM (\\d{1,2})([NS])\\s*");
+  line = trimmed(line).substr(0, kLongestQuote);  // the expression below recurses on its length
+  static const std::regex kUtm("WGS84 UTM (\\d{1,2})([NS])");
   std::smatch match;
   if (!std::regex_match(line, match, kUtm)) refuse(path, "not 'WGS84 UTM <zone>N|S': " + line);
   const int zone = std::stoi(match[1]);
@@ -99,11 +132,11 @@ std::optional<Georeference> from_pix4d(const fs::path& path) {
   stem.resize(stem.size() - std::string("_offset.xyz").size());
   for (const char* ending : {"_wkt.prj", ".prj"}) {
     const fs::path prj = path.parent_path() / (stem + ending);
-    if (!fs::exists(prj)) continue;
+    if (!is_there(prj)) continue;
     std::istringstream in(slurp(path));
     Vec3 offset;
     if (!(in >> offset.x() >> offset.y() >> offset.z())) refuse(path, "not three numbers");
-    return Georeference{trimmed(slurp(prj)), offset, path.string()};
+    return Georeference{checked_crs(prj, trimmed(slurp(prj))), offset, path.string()};
   }
   return {};
 }
@@ -134,7 +167,7 @@ Vec3 geodetic_to_ecef(double phi, double lambda, double height) {
 EarthMap local_at(const Georeference& g) {
   const auto place = numbers(g.crs.substr(4));
   if (!place || std::abs((*place)[0]) > 90 || std::abs((*place)[1]) > 360)
-    throw Error(Stage::kUsage, g.source, "not a latitude and a longitude: " + g.crs);
+    throw Error(Stage::kUsage, g.source, "not a latitude and a longitude: " + shortened(g.crs));
   const double phi = (*place)[0] * std::numbers::pi / 180;
   const double lambda = (*place)[1] * std::numbers::pi / 180;
   const double height = place->size() > 2 ? (*place)[2] : 0;
@@ -225,11 +258,11 @@ class Transformer {
     PjPtr crs(proj_create(context, georeference_.crs.c_str()));
     if (!crs || !proj_is_crs(crs.get()))
       throw Error(Stage::kUsage, georeference_.source,
-                  "unknown coordinate reference system: " + georeference_.crs);
+                  "unknown coordinate reference system: " + shortened(georeference_.crs));
     const PjPtr flat = horizontal_part(context, crs.get());
     if (!flat || proj_get_type(flat.get()) != PJ_TYPE_PROJECTED_CRS)
       throw Error(Stage::kUsage, georeference_.source,
-                  georeference_.crs +
+                  shortened(georeference_.crs) +
                       " is not a projected system in metres; for a place in degrees use --origin "
                       "latitude,longitude,height");
     name_ = proj_get_name(crs.get());
@@ -284,12 +317,12 @@ std::optional<Georeference> georeference_from_options(const std::string& crs,
 std::optional<Georeference> georeference_beside(const std::string& input) {
   const std::vector<fs::path> folders = folders_of(input);
   for (const fs::path& folder : folders)
-    if (fs::exists(folder / "metadata.xml"))
+    if (is_there(folder / "metadata.xml"))
       if (auto found = from_metadata_xml(folder / "metadata.xml")) return found;
   const fs::path& folder = folders.front();
   const bool is_odm = folder.filename().string().starts_with("odm_");
   for (const fs::path& place : {folder, folder.parent_path() / "odm_georeferencing"})
-    if ((place == folder || is_odm) && fs::exists(place / "odm_georeferencing_model_geo.txt"))
+    if ((place == folder || is_odm) && is_there(place / "odm_georeferencing_model_geo.txt"))
       return from_odm(place / "odm_georeferencing_model_geo.txt");
   std::vector<fs::path> offsets;
   std::error_code error;
@@ -316,12 +349,13 @@ EarthMap place_on_earth(const Georeference& g, const Vec3& probe) {
     transformer = std::make_shared<Transformer>(g, true);
   }
   if (!transformer->is_ready())
-    throw Error(Stage::kUsage, g.source, "no operation from " + g.crs + " to WGS 84 is known");
+    throw Error(Stage::kUsage, g.source,
+                "no operation from " + shortened(g.crs) + " to WGS 84 is known");
   map.name = transformer->name();
   map.to_ecef = [transformer, crs = g.crs](const Vec3& world) {
     const Vec3 p = transformer->to_ecef(world);
     if (!p.allFinite())
-      throw Error(Stage::kInput, crs,
+      throw Error(Stage::kInput, shortened(crs),
                   "coordinates outside the system's domain: is --origin missing or wrong?");
     return p;
   };

@@ -170,6 +170,44 @@ TEST_CASE("ContextCapture's metadata.xml is found beside the input and above its
   CHECK_THROWS_AS(georeference_beside(folder.path.string()), Error);
 }
 
+TEST_CASE("a metadata.xml is read as XML, and what is none is refused in one short line") {
+  const Folder folder;
+  const auto beside = [&](const std::string& text) {
+    folder.write("metadata.xml", text);
+    return georeference_beside(folder.path.string());
+  };
+  const auto g = beside(
+      "\xEF\xBB\xBF<?xml version='1.0'?>\r\n<!-- <SRS>EPSG:4326</SRS> -->"
+      "<M><SRS a='1'><![CDATA[EPSG:25832]]></SRS>\n<SRSOrigin>\n 1, 2, 3\n</SRSOrigin></M>");
+  REQUIRE(g);
+  CHECK(g->crs == "EPSG:25832");
+  CHECK(g->offset == Vec3(1, 2, 3));
+  CHECK(!beside("<project><modelVersion>4</modelVersion></project>"));
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  for (const std::string& text :
+       {std::string("no XML at all"), std::string("\0\1\2", 3), deep.substr(0, 900000),
+        "<SRS>" + std::string(60000, 'A') + "</SRS>", std::string(2000000, ' '),
+        "<M><SRS>EPSG:25832</SRS><SRSOrigin>" + std::string(60000, '1') + "</SRSOrigin></M>"}) {
+    try {
+      beside(text);
+      FAIL("accepted");
+    } catch (const Error& e) {
+      CHECK(std::string(e.what()).size() < 300);
+    }
+  }
+}
+
+TEST_CASE("an offset file of any length is refused, not searched for ever") {
+  const Folder folder;
+  for (const std::string& line : {std::string(100000, ' '), std::string(100000, '1'),
+                                  "WGS84 UTM 32N" + std::string(100000, 'N')}) {
+    folder.write("odm_georeferencing/odm_georeferencing_model_geo.txt", line + "\n1 2\n");
+    folder.write("odm_texturing/model.obj", "");
+    CHECK_THROWS_AS(georeference_beside((folder.path / "odm_texturing").string()), Error);
+  }
+}
+
 TEST_CASE("OpenDroneMap's and Pix4D's offsets are read") {
   const Folder folder;
   folder.write("odm_georeferencing/odm_georeferencing_model_geo.txt",
