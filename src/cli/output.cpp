@@ -50,20 +50,44 @@ std::optional<Georeference> georeference_of_sources(const Scene& scene, const Lo
   return found;
 }
 
-/// Where the tileset stands, said in the log.
-Placement place(const Scene& scene, const OutputArguments& a, const Vec3& probe, const Log& log) {
-  std::optional<Georeference> g = georeference_from_options(a.crs, a.origin);
-  if (!g && a.crs.empty()) g = georeference_of_sources(scene, log);
-  if (!g) {
-    log.message(Level::kInfo,
-                "no --crs, --origin or file beside the input says where this is: the tileset is "
-                "local, not placed on Earth");
+/// The map of a place that files beside the input tell of: nothing, with a warning, where it is no
+/// place for these buildings.
+std::optional<EarthMap> try_place(const Georeference& g, const std::vector<ExportBuilding>& all,
+                                  const Log& log) {
+  try {
+    EarthMap map = place_on_earth(g, all.front().origin);
+    for (const ExportBuilding& b : all) map.to_ecef(b.origin);
+    return map;
+  } catch (const Error& error) {
+    const bool is_named = error.item == g.source;
+    log.message(Level::kWarning, (is_named ? "" : g.source + ": ") + error.what() +
+                                     "; the tileset stays local: use --crs and --origin");
     return {};
   }
-  const EarthMap map = place_on_earth(*g, probe);
-  for (const std::string& w : map.warnings) log.message(Level::kWarning, w);
-  log.message(Level::kInfo, "the tileset is placed on Earth: " + map.name + ", from " + g->source);
-  return {map.to_ecef, map.name};
+}
+
+/// Where the tileset stands, said in the log.
+Placement place(const Scene& scene, const OutputArguments& a,
+                const std::vector<ExportBuilding>& buildings, const Log& log) {
+  const std::optional<Georeference> given = georeference_from_options(a.crs, a.origin);
+  std::optional<Georeference> found;
+  if (!given && a.crs.empty()) found = georeference_of_sources(scene, log);
+  std::optional<EarthMap> map;
+  if (given)
+    map = place_on_earth(*given, buildings.front().origin);
+  else if (found)
+    map = try_place(*found, buildings, log);
+  if (!map) {
+    if (!found)
+      log.message(Level::kInfo,
+                  "no --crs, --origin or file beside the input says where this is: the tileset is "
+                  "local, not placed on Earth");
+    return {};
+  }
+  for (const std::string& w : map->warnings) log.message(Level::kWarning, w);
+  log.message(Level::kInfo, "the tileset is placed on Earth: " + map->name + ", from " +
+                                (given ? given->source : found->source));
+  return {map->to_ecef, map->name};
 }
 
 void write_page(const Scene& scene, const Options& options, const std::string& report,
@@ -86,39 +110,66 @@ bool writes(const OutputArguments& a, const char* format) {
   return std::find(a.formats.begin(), a.formats.end(), format) != a.formats.end();
 }
 
-/// Writes the chain and notes what each layer's mesh takes of it.
-void write_glb(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
-               Building& b) {
+/// The chain; notes what each layer's mesh takes of it.
+Encoded encode_glb(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
+                   Building& b) {
   const BuildingGlb glb = encode_building_glb(
       out, {.compression = a.compression, .quantization = a.quantization, .switching = facts});
-  write_file(a.out, glb);
   for (std::size_t level = 0; level < out.levels.size(); ++level)
     for (Layer& layer : b.layers)
       if (std::ranges::count(out.levels[level].layers, layer.layer) > 0)
         layer.bytes = glb.level_bytes[level];
+  return glb;
 }
 
 /// The files of one building.
-void write_building(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
-                    Building& b) {
-  if (writes(a, "glb")) write_glb(out, facts, a, b);
+std::vector<Encoded> encode_building(const ExportBuilding& out, const SwitchFacts& facts,
+                                     const OutputArguments& a, Building& b) {
+  std::vector<Encoded> files;
+  if (writes(a, "glb")) files.push_back(encode_glb(out, facts, a, b));
   if (writes(a, "engine"))
-    for (const Encoded& file : encode_engine_levels(out, engine_options(a, facts)))
-      write_file(a.out, file);
+    for (Encoded& file : encode_engine_levels(out, engine_options(a, facts)))
+      files.push_back(std::move(file));
   for (const ExportLevel& level : out.levels)
     for (const int layer : level.layers) {
-      if (writes(a, "obj")) write_file(a.out, encode_obj(out, level, layer));
-      if (writes(a, "ply")) write_file(a.out, encode_ply(out, level, layer));
+      if (writes(a, "obj")) files.push_back(encode_obj(out, level, layer));
+      if (writes(a, "ply")) files.push_back(encode_ply(out, level, layer));
     }
+  return files;
 }
 
-void write_tileset(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts,
-                   const Placement& placement, const OutputArguments& a) {
-  const std::vector<Encoded> files = encode_tileset(buildings, {.compression = a.compression,
-                                                                .quantization = a.quantization,
-                                                                .target_sse = a.target_sse,
-                                                                .switching = facts,
-                                                                .placement = placement});
+/// A building that cannot be encoded fails alone; only what cannot be written ends the run.
+void write_building(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
+                    Building& b) {
+  std::vector<Encoded> files;
+  try {
+    files = encode_building(out, facts, a, b);
+  } catch (const std::exception& e) {
+    b.failure = b.source.name + ": cannot be exported: " + e.what();
+  }
+  for (const Encoded& file : files) write_file(a.out, file);
+}
+
+std::vector<Encoded> encode_tiles(const Scene& scene, const std::vector<ExportBuilding>& buildings,
+                                  const SwitchFacts& facts, const OutputArguments& a,
+                                  const Log& log) {
+  return encode_tileset(buildings, {.compression = a.compression,
+                                    .quantization = a.quantization,
+                                    .target_sse = a.target_sse,
+                                    .switching = facts,
+                                    .placement = place(scene, a, buildings, log)});
+}
+
+/// A tileset that cannot be made leaves the buildings' files and the report as they are.
+void write_tileset(Scene& scene, const std::vector<ExportBuilding>& buildings,
+                   const SwitchFacts& facts, const OutputArguments& a, const Log& log) {
+  std::vector<Encoded> files;
+  try {
+    files = encode_tiles(scene, buildings, facts, a, log);
+  } catch (const std::exception& e) {
+    scene.tileset_failure = e.what();
+    return;
+  }
   if (writes(a, "3tz")) write_file(a.out, encode_3tz(files));
   if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) write_file(a.out, files[i]);
@@ -199,14 +250,22 @@ void write_outputs(Scene& scene, const OutputArguments& a, const Log& log) {
   for (Building& b : scene.buildings)
     if (ExportBuilding out = export_building(b); !out.levels.empty())
       buildings.push_back(std::move(out)), sources.push_back(&b);
-  if (buildings.empty()) return;
   parallel_for(buildings.size(), [&](std::size_t i) {
     Stopwatch own(sources[i]->timings.export_);
     write_building(buildings[i], facts, a, *sources[i]);
   });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    if (sources[i]->failure.empty()) std::swap(buildings[kept++], buildings[i]);
+  buildings.resize(kept);
+  if (buildings.empty()) return;
   if (writes(a, "engine")) write_file(a.out, encode_lods_json(buildings, engine_options(a, facts)));
-  if (writes(a, "3dtiles") || writes(a, "3tz"))
-    write_tileset(buildings, facts, place(scene, a, buildings.front().origin, log), a);
+  if (writes(a, "3dtiles") || writes(a, "3tz")) write_tileset(scene, buildings, facts, a, log);
+}
+
+void check_place(const OutputArguments& a) {
+  if (const auto given = georeference_from_options(a.crs, a.origin))
+    place_on_earth(*given, Vec3::Zero());
 }
 
 SwitchOptions switch_options(const OutputArguments& a) {
@@ -230,7 +289,10 @@ std::vector<BuildingSights> read_sights(const std::string& prior, int layers, co
 }
 
 void report_problems(const Scene& scene, const Log& log) {
+  for (const std::string& w : scene.warnings) log.message(Level::kWarning, w);
   for (const std::string& w : scene.switching.warnings) log.message(Level::kWarning, w);
+  if (!scene.tileset_failure.empty())
+    log.message(Level::kError, "tileset.json is not written: " + scene.tileset_failure);
   for (const ReadFailure& f : scene.failures) log.message(Level::kError, f.path + ": " + f.message);
   for (const Building& b : scene.buildings) {
     if (!b.failure.empty()) log.message(Level::kError, b.failure);
@@ -243,7 +305,7 @@ void report_problems(const Scene& scene, const Log& log) {
 }
 
 int exit_code(const Scene& scene) {
-  std::size_t failed = scene.failures.size();
+  std::size_t failed = scene.failures.size() + !scene.tileset_failure.empty();
   for (const Building& b : scene.buildings) failed += b.has_failed();
   if (failed == 0) return 0;
   const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),

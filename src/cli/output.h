@@ -33,8 +33,12 @@ SwitchOptions switch_options(const OutputArguments& a);
 /// Error{kUsage} when its number of layers is another.
 std::vector<BuildingSights> read_sights(const std::string& prior, int layers, const Log& log);
 
+/// Throws Error{kUsage} when --crs and --origin name no place; before the work rather than after.
+void check_place(const OutputArguments& a);
+
 /// After decide_switches: writes the files of all buildings and of the scene, notes their seconds
-/// and bytes, and says where on Earth the tileset is, if anywhere. Throws Error{kOutput}.
+/// and bytes, and says where on Earth the tileset is, if anywhere. A building that cannot be
+/// encoded becomes a failed one. Throws Error{kOutput} for what cannot be written.
 void write_outputs(Scene& scene, const OutputArguments& a, const Log& log);
 
 /// Failures as errors, the rest as warnings, one line each.
