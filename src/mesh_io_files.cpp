@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
+#include <set>
 
 #include "mesh_io_formats.h"
 
@@ -121,7 +121,8 @@ void sort_in(const fs::path& path, bool is_entered, Folder& folder) {
   }
 }
 
-/// Links to folders are not followed, so that none is entered twice; own output is not entered.
+/// Links to folders are not followed, so that none is entered twice; hidden folders and own output
+/// are not entered.
 Folder look_through(const std::string& path, bool is_recursive) {
   Folder folder;
   std::error_code error;
@@ -131,7 +132,7 @@ Folder look_through(const std::string& path, bool is_recursive) {
     std::error_code unknown;  // such as a link that leads to itself: reading it says so
     if (!at->is_directory(unknown)) {
       sort_in(at->path(), is_recursive || at.depth() == 0, folder);
-    } else if (is_own_output(at->path())) {
+    } else if (at->path().filename().string().starts_with('.') || is_own_output(at->path())) {
       at.disable_recursion_pending();
     }
     if (at.depth() > 0 && !is_recursive && ++seen > kMostEntries) {
@@ -196,10 +197,11 @@ void keep_each_once(InputList& list) {
     if (!is_new && rank(file) < rank(at->second)) at->second = file;
   }
   std::vector<std::string> files;
+  std::set<std::string> seen;
   for (const std::string& file : list.files) {
     const std::string& path = kept.at(itself(file));
     if (path == file) {
-      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+      if (seen.insert(file).second) files.push_back(file);
     } else if (itself(file) != fs::absolute(file).lexically_normal().string()) {
       list.warnings.push_back(file + ": the same file as " + path + ", which is read once");
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "mesh_io_files.h"
 #include "mesh_io_formats.h"
@@ -15,10 +16,12 @@ namespace {
 
 constexpr double kSteep = 0.2, kFlat = 0.98;  // 12 degrees: above noise, below low roofs
 constexpr double kLeastOverhang = 0.04;       // of the surface, read z up, before y is thought of
-constexpr double kOverhangRatio = 0.25;       // what may slope downward read y up, of that
-constexpr double kDegreeExtent = 1;           // no scene is larger in degrees
-constexpr double kNeedle = 200;               // height over width: no mast has more; at 0,0 …
-constexpr double kSureNeedle = 1000;          // … even more is asked for
+constexpr double kBalance = 0.35;        // of what slopes; 0.5 on a side, 0.2 on airborne roofs
+constexpr double kOverhangRatio = 0.25;  // what may slope downward read y up, of that
+constexpr double kDegreeExtent = 1;      // no scene is larger in degrees
+constexpr double kNeedle = 200;          // height over width: no mast has more; at 0,0 …
+constexpr double kSureNeedle = 1000;     // … even more is asked for
+constexpr double kLargestSystem = 1;     // MiB
 constexpr double kSmallest = 0.5, kTallest = 600;     // metres
 constexpr double kLowHouse = 2.5, kHighHouse = 60;    // metres: what a unit is proposed for
 constexpr double kBroad = 100, kTall = 120;           // both at once is suspicious …
@@ -96,12 +99,19 @@ std::string y_up_writer(const RawFile& raw) {
   return "";
 }
 
+/// Does much hang over if `up` is up, about as much as slopes upward, and next to nothing if
+/// `other` is?
+bool is_contradicted(const Facts& facts, int up, int other) {
+  const double over = facts.overhang(up), sloped = (facts.up[up] + facts.down[up]) / facts.area;
+  return over > kLeastOverhang && over > kBalance * sloped &&
+         facts.overhang(other) < kOverhangRatio * over;
+}
+
 /// Do the faces tell that y is up (1), z (−1), or nothing (0)?
 int slopes_say_y(const Facts& facts) {
-  const double y = facts.overhang(1), z = facts.overhang(2);
-  if (z > kLeastOverhang && y < kOverhangRatio * z) return 1;
-  if (y > kLeastOverhang && z < kOverhangRatio * y) return -1;
-  return 0;
+  if (!(facts.area > 0)) return 0;
+  if (is_contradicted(facts, 2, 1)) return 1;
+  return is_contradicted(facts, 1, 2) ? -1 : 0;
 }
 
 /// Returns the axis that seems to be up, 1 or 2.
@@ -135,9 +145,22 @@ bool looks_like_degrees(const Facts& facts, int up) {
   return wide > 0 && (is_off_zero || size[up] > kSureNeedle * wide);
 }
 
+/// The reference system that a .prj of the same name holds as WKT, in small letters; or nothing.
+std::string system_beside(const std::string& path) {
+  std::filesystem::path prj = path;
+  prj.replace_extension(".prj");
+  try {
+    return lower(as_text(read_bytes(prj.string(), kLargestSystem)));
+  } catch (const Error&) {
+    return "";  // not there, or nothing to learn from
+  }
+}
+
 void judge_degrees(const std::string& path, const Facts& facts, const ReadOptions& options,
-                   Reading& how) {
-  if (!looks_like_degrees(facts, 2) && !looks_like_degrees(facts, 1)) return;
+                   const std::string& system, Reading& how) {
+  const bool can_be = facts.box.center().head<2>().cwiseAbs().maxCoeff() <= 360;
+  const bool is_said = can_be && (system.starts_with("geogc") || system.starts_with("geodc"));
+  if (!is_said && !looks_like_degrees(facts, 2) && !looks_like_degrees(facts, 1)) return;
   const std::string message =
       "extents of " + size_text(facts.box.size()) +
       " look like degrees of longitude and latitude beside a height in metres: project the "
@@ -158,21 +181,26 @@ std::string units_for(double height) {
   return text.empty() ? "--unit mm, cm, in or ft" : text;
 }
 
-/// The unit that SketchUp and others write into the head; empty: none, or metres.
-std::string unit_in_head(const RawFile& raw) {
-  const std::string remarks = lower(raw.remarks);
-  const std::size_t at = remarks.find("units");
-  if (at == remarks.npos) return "";
-  const std::string rest = remarks.substr(at, 40);
+/// The unit that a text names: mm, cm, in, ft; empty: none, or metres.
+std::string unit_in(const std::string& text) {
   static constexpr std::pair<const char*, const char*> kWords[] = {
       {"millimet", "mm"}, {"centimet", "cm"}, {"inch", "in"}, {"feet", "ft"}, {"foot", "ft"}};
   for (const auto& [word, unit] : kWords)
-    if (rest.find(word) != rest.npos) return unit;
+    if (text.find(word) != text.npos) return unit;
   return "";
 }
 
+/// By a line like SketchUp's "File units = inches" in the head, or the last unit of a projected
+/// system beside the file, which is that of its axes.
+std::string named_unit(const RawFile& raw, const std::string& system) {
+  const std::string remarks = lower(raw.remarks);
+  const std::size_t in_head = remarks.find("units"), in_system = system.rfind("unit[");
+  if (in_head != remarks.npos) return unit_in(remarks.substr(in_head, 40));
+  return in_system != system.npos ? unit_in(system.substr(in_system, 40)) : "";
+}
+
 void judge_unit(const RawFile& raw, const Facts& facts, const ReadOptions& options, int up,
-                Reading& how) {
+                const std::string& system, Reading& how) {
   how.unit = options.unit.value_or(1.0);
   if (options.unit) return;
   const Vec3 size = facts.box.size();
@@ -180,8 +208,8 @@ void judge_unit(const RawFile& raw, const Facts& facts, const ReadOptions& optio
   const double narrow = std::min(size[0], size[3 - up]);
   const bool is_house_of_giants =
       height > kTall && narrow > kBroad && height > kLikeHouse * wide && height < kLikeTower * wide;
-  if (const std::string unit = unit_in_head(raw); !unit.empty()) {
-    how.doubts.push_back("its head says that its unit is " + unit +
+  if (const std::string unit = named_unit(raw, system); !unit.empty()) {
+    how.doubts.push_back("its head or its .prj says that its unit is " + unit +
                          ", it is read as metres: --unit " + unit + " takes it as such");
   } else if (height > kTallest || is_house_of_giants) {
     how.doubts.push_back("is " + size_text(size) +
@@ -198,9 +226,10 @@ void judge_unit(const RawFile& raw, const Facts& facts, const ReadOptions& optio
 Reading judge(const std::string& path, const RawFile& raw, const ReadOptions& options) {
   Reading how;
   const Facts facts = gather(raw);
-  judge_degrees(path, facts, options, how);
+  const std::string system = system_beside(path);
+  judge_degrees(path, facts, options, system, how);
   const int up = judge_axis(raw, facts, options, how);
-  judge_unit(raw, facts, options, up, how);
+  judge_unit(raw, facts, options, up, system, how);
   return how;
 }
 

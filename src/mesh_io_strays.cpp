@@ -19,12 +19,7 @@ constexpr double kFarConnected = 200;    // for what faces connect: no wall and 
 constexpr double kSmall = 0.02;          // of the main leaf's surface
 constexpr double kSmallOfPoints = 0.01;  // of its points: more than noise of a scan
 constexpr int kBins = 4096;
-
-/// A gap in one coordinate.
-struct Gap {
-  double width = 0, from = 0;
-  int axis = 0;
-};
+constexpr std::size_t kMostLeaves = 1000;
 
 /// Can there be a gap at all? Cheap: most buildings have none.
 bool may_have_gap(const std::vector<Vec3>& points, const std::vector<int>& items, int axis) {
@@ -40,40 +35,39 @@ bool may_have_gap(const std::vector<Vec3>& points, const std::vector<int>& items
   return std::find(is_full.begin(), end, 0) != end;
 }
 
-Gap largest_gap(const std::vector<Vec3>& points, const std::vector<int>& items) {
-  Gap best;
-  std::vector<double> values;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!may_have_gap(points, items, axis)) continue;
-    values.clear();
-    for (const int i : items) values.push_back(points[i][axis]);
-    std::sort(values.begin(), values.end());
-    for (std::size_t k = 1; k < values.size(); ++k)
-      if (const double width = values[k] - values[k - 1]; width > best.width)
-        best = {width, values[k - 1], axis};
+/// The items in groups between gaps along an axis; one group: there is none.
+std::vector<std::vector<int>> cut(const std::vector<Vec3>& points, std::vector<int> items,
+                                  int axis) {
+  std::sort(items.begin(), items.end(),
+            [&](int a, int b) { return points[a][axis] < points[b][axis]; });
+  std::vector<std::vector<int>> groups(1);
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (k > 0 && points[items[k]][axis] - points[items[k - 1]][axis] >= kLeastGap)
+      groups.emplace_back();
+    groups.back().push_back(items[k]);
   }
-  return best;
+  return groups;
 }
 
-/// Point → leaf; −1: not among `items`.
+/// Point → leaf; −1: not among `items`. More than kMostLeaves are no building with strays: `count`
+/// is 0 then.
 std::vector<int> find_leaves(const std::vector<Vec3>& points, std::vector<int> items, int& count) {
   std::vector<int> leaf(points.size(), -1);
   std::vector<std::vector<int>> open;
   open.push_back(std::move(items));
-  count = 0;
-  while (!open.empty()) {
+  for (count = 0; !open.empty();) {
     std::vector<int> all = std::move(open.back());
     open.pop_back();
-    const Gap gap = largest_gap(points, all);
-    if (gap.width < kLeastGap) {
+    std::vector<std::vector<int>> groups;
+    for (int axis = 0; axis < 3 && groups.size() < 2; ++axis)
+      if (may_have_gap(points, all, axis)) groups = cut(points, all, axis);
+    if (groups.size() > 1) {
+      for (std::vector<int>& group : groups) open.push_back(std::move(group));
+    } else {
       for (const int i : all) leaf[i] = count;
       ++count;
-      continue;
     }
-    const auto middle = std::partition(all.begin(), all.end(),
-                                       [&](int i) { return points[i][gap.axis] <= gap.from; });
-    open.emplace_back(middle, all.end());
-    open.emplace_back(all.begin(), middle);
+    if (open.size() + static_cast<std::size_t>(count) > kMostLeaves) return count = 0, leaf;
   }
   return leaf;
 }

@@ -301,9 +301,13 @@ TEST_CASE("read_single takes a file as one mesh") {
 
 TEST_CASE("no truncation and no flipped byte crashes a reader") {
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"a.off", off_text(kHouse)},     {"a.obj", obj_text(kHouse)},
-      {"a.stl", stl_bytes(kHouse)},    {"a.ply", ply_bytes<float>(kHouse, true)},
-      {"a.xyz", sphere_xyz(30, true)}, {"a.glb", glb_bytes(kHouse, R"([{"mesh":0}])", "[0]")}};
+      {"a.off", off_text(kHouse)},
+      {"a.obj", obj_text(kHouse)},
+      {"a.stl", stl_bytes(kHouse)},
+      {"a.ply", ply_bytes<float>(kHouse, true)},
+      {"a.xyz", sphere_xyz(30, true)},
+      {"a.csv", "x;y;z\n" + sphere_xyz(30, false)},
+      {"a.glb", glb_bytes(kHouse, R"([{"mesh":0}])", "[0]")}};
   const TempFolder folder;
   std::mt19937_64 random(11);
   for (const auto& [name, bytes] : files)

@@ -296,3 +296,15 @@ TEST_CASE("degrees beside a height in metres are refused, unless the unit is giv
                     return Vec3(p + Vec3(15, 40, 0));
                   }))) == "");
 }
+
+TEST_CASE("a .prj beside a file tells of degrees and feet") {
+  const TempFolder folder;
+  const std::string file = folder.write("a.obj", obj_text(kHouse));
+  folder.write("a.prj", R"(GEOGCS["WGS 84",UNIT["degree",0.0174532925199433]])");
+  CHECK_THAT(read_sources({file}).failures.at(0).message, Contains("degrees"));
+  folder.write("a.prj", R"(PROJCS["x",GEOGCS["y",UNIT["Degree",0.017]],UNIT["Foot_US",0.3048]])");
+  CHECK_THAT(joined(only(read_sources({file})).warnings), Contains("--unit ft"));
+  CHECK(only(read_sources({file}, {.unit = 0.3048})).warnings.empty());
+  folder.write("a.prj", R"(PROJCS["x",GEOGCS["y",UNIT["Degree",0.017]],UNIT["metre",1]])");
+  CHECK(only(read_sources({file})).warnings.empty());
+}
