@@ -30,6 +30,7 @@ constexpr const char* kGeocentric = "EPSG:4978";
 constexpr std::uintmax_t kLargestSidecar = 1 << 20;  // bytes
 constexpr std::size_t kLongestCrs = 16384;           // WKT of compound systems has some 5,000
 constexpr std::size_t kLongestQuote = 80;
+constexpr double kFarthest = 1e8;  // metres: no system's coordinates reach it
 
 /// "a,b" or "a,b,c", blanks allowed around; nothing when it is anything else.
 std::optional<std::vector<double>> numbers(const std::string& text) {
@@ -166,8 +167,10 @@ Vec3 geodetic_to_ecef(double phi, double lambda, double height) {
 /// Axes east, north and up at a place.
 EarthMap local_at(const Georeference& g) {
   const auto place = numbers(g.crs.substr(4));
-  if (!place || std::abs((*place)[0]) > 90 || std::abs((*place)[1]) > 360)
-    throw Error(Stage::kUsage, g.source, "not a latitude and a longitude: " + shortened(g.crs));
+  const bool is_high = place && place->size() > 2 && std::abs((*place)[2]) > kFarthest;
+  if (!place || is_high || std::abs((*place)[0]) > 90 || std::abs((*place)[1]) > 360)
+    throw Error(Stage::kUsage, g.source,
+                "not a latitude, a longitude and a height: " + shortened(g.crs));
   const double phi = (*place)[0] * std::numbers::pi / 180;
   const double lambda = (*place)[1] * std::numbers::pi / 180;
   const double height = place->size() > 2 ? (*place)[2] : 0;
@@ -301,6 +304,9 @@ std::optional<Georeference> georeference_from_options(const std::string& crs,
   const auto place = numbers(origin);
   if (!origin.empty() && !place)
     throw Error(Stage::kUsage, "--origin", "must be two or three numbers with commas: " + origin);
+  for (const double value : place.value_or(std::vector<double>()))
+    if (std::abs(value) > kFarthest)
+      throw Error(Stage::kUsage, "--origin", "lies beyond any place on Earth: " + origin);
   if (crs.empty() || crs == "local") {
     if (!place) return {};
     if (crs == "local") throw Error(Stage::kUsage, "--origin", "--crs local has no origin");

@@ -25,7 +25,7 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
 constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
 constexpr const char* kEmptyLayer =
-    "came out empty: too small a part of the input's box, or no body; see the input's size";
+    "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
 constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }

@@ -140,6 +140,9 @@ TEST_CASE("what cannot be a place is refused, and nothing given is no place") {
   CHECK(!georeference_from_options("local", ""));
   CHECK_THROWS_AS(georeference_from_options("", "1;2"), Error);
   CHECK_THROWS_AS(georeference_from_options("", "nan,2"), Error);
+  CHECK_THROWS_AS(georeference_from_options("", "48,11,1e300"), Error);
+  CHECK_THROWS_AS(georeference_from_options("EPSG:25832", "1e300,5334000"), Error);
+  CHECK_THROWS_AS(placed("ENU:48,11,1e300", Vec3::Zero()), Error);
   CHECK_THROWS_AS(georeference_from_options("", "691000,5334000"), Error);
   CHECK_THROWS_AS(georeference_from_options("local", "1,2"), Error);
   CHECK_THROWS_WITH(placed("EPSG:999999", Vec3::Zero()), Catch::Contains("unknown"));
