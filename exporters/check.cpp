@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "../src/error.h"
+#include "check_files.h"
 #include "check_switching.h"
 #include "tiles3d_frame.h"
 
@@ -27,23 +27,7 @@ using Transform = std::array<double, 16>;
 constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr double kSlack = 1e-4;    // metres: boxes are written from doubles, contents are floats
 constexpr double kLoosest = 1.05;  // a leaf's box against its content's diagonal
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string decoded_uri(const std::string& uri) {
-  std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i)
-    if (uri[i] == '%' && i + 2 < uri.size()) {
-      out += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      out += uri[i];
-    }
-  return out;
-}
+constexpr int kDeepest = 200;      // tiles, external tilesets included
 
 Transform product(const Transform& a, const Transform& b) {
   Transform out{};
@@ -62,7 +46,8 @@ struct Shown {
 
 struct Walk {
   std::vector<Finding>& findings;
-  std::set<std::string> files;  // GLBs met
+  CheckedFolder folder;
+  std::set<std::string> files;  // contents met
   double target_sse = 0;        // of asset.extras; 0: not said
   ScopeCheck scope;
   std::map<std::string, std::vector<Shown>> buildings;
@@ -79,6 +64,7 @@ struct Place {
   Transform transform;  // to the tileset's frame
   double above;         // the parent's error
   bool is_refine_known;
+  int depth = 0;
 };
 
 Box tile_box(const Json& tile) {
@@ -99,8 +85,7 @@ bool is_inside(const Box& inner, const Box& outer, double slack) {
 
 void check_content(Walk& walk, const Json& tile, const Place& place, const fs::path& path,
                    const Box& box) {
-  walk.files.insert(path.lexically_normal().string());
-  const GlbContent content = check_glb(slurp(path), path.string(), walk.findings);
+  const GlbContent content = check_glb(read_regular(path), path.string(), walk.findings);
   if (content.meshes.empty() || content.has_transforms) return;
   Box seen;
   std::vector<Box> of_feature(content.rows.size());
@@ -136,49 +121,67 @@ void check_content(Walk& walk, const Json& tile, const Place& place, const fs::p
 void check_tile(Walk& walk, const Json& tile, Place place);
 
 void check_external(Walk& walk, const fs::path& path, const Place& place) {
-  const Json tileset = Json::parse(slurp(path), nullptr, false);
+  const Json tileset = parse_json(read_regular(path));
   if (!tileset.is_object() || !tileset.contains("root")) {
     walk.report("json", path.string(), "not a tileset");
     return;
   }
   check_tile(walk, tileset["root"],
-             {path.parent_path(), path.string() + " root", place.transform, place.above, false});
+             {path.parent_path(), path.string() + " root", place.transform, place.above, false,
+              place.depth + 1});
 }
 
-void check_tile(Walk& walk, const Json& tile, Place place) {
-  const Box box = tile_box(tile);
-  if (tile.contains("transform"))
-    place.transform = product(place.transform, tile["transform"].get<Transform>());
+/// The tile's content, once: no tile of colod's shares its file, and a tileset that names itself
+/// has no end.
+void follow(Walk& walk, const Json& tile, const Place& place, const std::string& uri,
+            const Box& box) {
+  if (uri.empty()) return walk.report("content", place.where, "a tile without content");
+  const fs::path path = walk.folder.resolve(place.folder, uri, place.where, walk.findings);
+  if (path.empty()) return;
+  if (!walk.files.insert(fs::weakly_canonical(path).string()).second)
+    return walk.report("repeated", place.where,
+                       "another tile shows " + path.string() + ", too; it is read once");
+  if (uri.ends_with(".json"))
+    check_external(walk, path, place);
+  else
+    check_content(walk, tile, place, path, box);
+}
+
+/// What the tile says of itself.
+void check_numbers(Walk& walk, const Json& tile, const Place& place, const Box& box, bool is_leaf) {
   const double error = tile.at("geometricError");
-  const Json children = tile.value("children", Json::array());
-  const std::string uri = tile.value("content", Json::object()).value("uri", "");
-  const bool is_external = uri.ends_with(".json");
   if (!(error >= 0)) walk.report("error-negative", place.where, "a negative geometric error");
   if (!(error < place.above))
     walk.report("error-not-falling", place.where, "not less than its parent's geometric error");
-  if (children.empty() && !is_external && error != 0)
+  if (is_leaf && error != 0)
     walk.report("error-leaf", place.where, "a leaf's geometric error is not 0");
   if (!place.is_refine_known && tile.value("refine", "") != "REPLACE")
     walk.report("refine", place.where, "the root does not say refine REPLACE");
   if (box.is_empty() || !(box.diagonal() > 0)) walk.report("box", place.where, "an empty box");
-  const fs::path path = place.folder / decoded_uri(uri);
-  place.above = error;
-  if (uri.empty()) {
-    walk.report("content", place.where, "a tile without content");
-  } else if (!fs::exists(path)) {
-    walk.report("content", place.where, "no file " + path.string());
-  } else if (is_external) {
-    check_external(walk, path, place);
-  } else {
-    check_content(walk, tile, place, path, box);
-  }
+}
+
+void check_tile(Walk& walk, const Json& tile, Place place) {
+  if (place.depth > kDeepest)
+    return walk.report("too-deep", place.where,
+                       "more than " + std::to_string(kDeepest) + " tiles one below the other");
+  const Box box = tile_box(tile);
+  if (tile.contains("transform"))
+    place.transform = product(place.transform, tile["transform"].get<Transform>());
+  const auto children = tile.find("children");
+  const bool has_children = children != tile.end() && !children->empty();
+  const std::string uri = tile.value("content", Json::object()).value("uri", "");
+  check_numbers(walk, tile, place, box, !has_children && !uri.ends_with(".json"));
+  place.above = tile.at("geometricError");
+  follow(walk, tile, place, uri, box);
+  if (!has_children) return;
   int number = 0;
-  for (const Json& child : children) {
+  for (const Json& child : *children) {
     const std::string where = place.where + "." + std::to_string(number++);
     const Box inner = moved(tile_box(child), child.value("transform", kIdentity));
     if (!is_inside(inner, box, kSlack))
       walk.report("child-outside", where, "its box reaches out of its parent's");
-    check_tile(walk, child, {place.folder, where, place.transform, error, true});
+    check_tile(walk, child,
+               {place.folder, where, place.transform, place.above, true, place.depth + 1});
   }
 }
 
@@ -198,80 +201,107 @@ void check_identity(Walk& walk) {
     }
 }
 
-void walk_tileset(Walk& walk, const std::string& path) {
-  const Json tileset = Json::parse(slurp(path), nullptr, false);
-  if (!tileset.is_object() || !tileset.contains("root")) {
-    walk.report("json", path, "not a tileset");
-    return;
-  }
+void walk_root(Walk& walk, const Json& tileset, const std::string& path) {
+  const Json& asset = tileset.at("asset");
+  if (asset.at("version") != "1.1") walk.report("version", path, "asset.version is not 1.1");
+  const Json extras = asset.value("extras", Json::object());
+  walk.target_sse = extras.value("targetSse", 0.0);
+  walk.scope.expect(extras.value("switching", Json::object()));
+  const double error = tileset.at("geometricError"), root = tileset.at("root").at("geometricError");
+  if (error <= 0 || (tileset["root"].contains("children") && root <= 0))
+    walk.report("error-zero", path, "geometric errors of 0: nothing would ever be refined");
+  if (error < 2 * root)
+    walk.report("error-vanishes", path, "the tileset's error is too small: it vanishes from afar");
+  Json unmoved = tileset["root"];  // boxes are compared about its frame, not the Earth's centre
+  unmoved.erase("transform");
+  check_tile(walk, unmoved,
+             {fs::path(path).parent_path(), path + " root", kIdentity,
+              std::numeric_limits<double>::infinity(), false});
+  check_identity(walk);
+}
+
+/// Runs `look`; what it stumbles on is a finding about `path`.
+template <typename Look>
+void guard(Walk& walk, const std::string& path, const Look& look) {
   try {
-    const Json asset = tileset.at("asset");
-    if (asset.at("version") != "1.1") walk.report("version", path, "asset.version is not 1.1");
-    const Json extras = asset.value("extras", Json::object());
-    walk.target_sse = extras.value("targetSse", 0.0);
-    walk.scope.expect(extras.value("switching", Json::object()));
-    const double error = tileset.at("geometricError"), root = tileset["root"].at("geometricError");
-    if (error <= 0 || (tileset["root"].contains("children") && root <= 0))
-      walk.report("error-zero", path, "geometric errors of 0: nothing would ever be refined");
-    if (error < 2 * root)
-      walk.report("error-vanishes", path,
-                  "the tileset's error is too small: it vanishes from afar");
-    Json unmoved = tileset["root"];
-    unmoved.erase(
-        "transform");  // boxes are compared about the root's frame, not the Earth's centre
-    check_tile(walk, unmoved,
-               {fs::path(path).parent_path(), path + " root", kIdentity,
-                std::numeric_limits<double>::infinity(), false});
-    check_identity(walk);
+    look();
   } catch (const Json::exception& problem) {
     walk.report("json", path, problem.what());
   } catch (const Error& problem) {
     walk.report("json", path, problem.what());
-  } catch (const std::logic_error& problem) {  // a broken % escape
-    walk.report("json", path, problem.what());
   }
+}
+
+void walk_tileset(Walk& walk, const std::string& path) {
+  guard(walk, path, [&] {
+    walk.files.insert(fs::weakly_canonical(path).string());
+    const Json tileset = parse_json(read_regular(path));
+    if (!tileset.is_object() || !tileset.contains("root"))
+      walk.report("json", path, "not a tileset");
+    else
+      walk_root(walk, tileset, path);
+  });
+}
+
+/// GLBs below the folder that no tile names.
+std::vector<std::string> other_files(const Walk& walk, const std::string& folder) {
+  std::vector<std::string> others;
+  const auto skip = fs::directory_options::skip_permission_denied;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, skip)) {
+    std::error_code error;
+    const fs::path& path = entry.path();
+    if (path.extension() == ".glb" && entry.is_regular_file(error) && walk.folder.holds(path) &&
+        !walk.files.contains(fs::weakly_canonical(path).string()))
+      others.push_back(path.string());
+  }
+  std::sort(others.begin(), others.end());
+  return others;
+}
+
+void check_folder(Walk& walk, const std::string& path) {
+  const fs::path tileset = fs::path(path) / "tileset.json";
+  const bool has_tileset = fs::exists(tileset);
+  if (has_tileset && walk.folder.holds(tileset))
+    walk_tileset(walk, tileset.string());
+  else if (has_tileset)
+    walk.report("outside", tileset.string(), "leads out of the folder, and is not read");
+  const std::vector<std::string> others = other_files(walk, path);
+  if (!has_tileset && others.empty())
+    throw Error(Stage::kInput, path, "holds neither tileset.json nor a GLB");
+  for (const std::string& file : others)
+    guard(walk, file, [&] {
+      const GlbContent content = check_glb(read_regular(file), file, walk.findings);
+      if (!content.json.is_object()) return;
+      walk.scope.expect(
+          content.json.value("/asset/extras/switching"_json_pointer, Json(Json::object())));
+      walk.scope.add(content.rows, file);
+    });
+  if (const fs::path lods = fs::path(path) / "engine" / "lods.json";
+      fs::exists(lods) && walk.folder.holds(lods))
+    guard(walk, lods.string(),
+          [&] { check_lods(read_regular(lods), lods.string(), walk.scope, walk.findings); });
 }
 
 }  // namespace
 
 void check_tileset(const std::string& path, std::vector<Finding>& findings) {
-  Walk walk{findings, {}, 0, {}, {}};
+  Walk walk{findings, CheckedFolder(fs::path(path).parent_path()), {}, 0, {}, {}};
   walk_tileset(walk, path);
   walk.scope.report(findings);
 }
 
 std::vector<Finding> check_output(const std::string& path) {
   std::vector<Finding> findings;
-  if (!fs::is_directory(path)) {
-    if (!fs::exists(path)) throw Error(Stage::kInput, path, "no such file");
-    if (fs::path(path).extension() == ".json")
-      check_tileset(path, findings);
-    else
-      check_glb(slurp(path), path, findings);
-    return findings;
+  if (!fs::exists(path)) throw Error(Stage::kInput, path, "no such file");
+  if (fs::is_directory(path)) {
+    Walk walk{findings, CheckedFolder(path), {}, 0, {}, {}};
+    check_folder(walk, path);
+    walk.scope.report(findings);
+  } else if (fs::path(path).extension() == ".json") {
+    check_tileset(path, findings);
+  } else {
+    check_glb(read_regular(path), path, findings);
   }
-  Walk walk{findings, {}, 0, {}, {}};
-  const fs::path tileset = fs::path(path) / "tileset.json";
-  const bool has_tileset = fs::exists(tileset);
-  if (has_tileset) walk_tileset(walk, tileset.string());
-  std::vector<std::string> others;
-  for (const auto& entry : fs::recursive_directory_iterator(path))
-    if (entry.path().extension() == ".glb" &&
-        !walk.files.contains(entry.path().lexically_normal().string()))
-      others.push_back(entry.path().string());
-  std::sort(others.begin(), others.end());
-  if (!has_tileset && others.empty())
-    throw Error(Stage::kInput, path, "holds neither tileset.json nor a GLB");
-  for (const std::string& file : others) {
-    const GlbContent content = check_glb(slurp(file), file, findings);
-    if (!content.json.is_object()) continue;
-    walk.scope.expect(
-        content.json.value("/asset/extras/switching"_json_pointer, Json(Json::object())));
-    walk.scope.add(content.rows, file);
-  }
-  if (const fs::path lods = fs::path(path) / "engine" / "lods.json"; fs::exists(lods))
-    check_lods(slurp(lods), lods.string(), walk.scope, findings);
-  walk.scope.report(findings);
   return findings;
 }
 

@@ -2,14 +2,18 @@
 // EXT_mesh_features, EXT_structural_metadata: what they demand and validators do not decode.
 // Differs: reads what colod writes; of other files, what it does not know is left out, not guessed.
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <limits>
+#include <new>
+#include <set>
+#include <stdexcept>
 
 #include "../src/error.h"
 #include "check.h"
+#include "check_accessors.h"
 #include "draco.h"
 #include "gltf.h"
-#include "meshopt.h"
 
 namespace colod {
 
@@ -20,120 +24,12 @@ namespace {
 constexpr double kBoundsSlack = 1e-5;  // metres, and relative
 constexpr double kLeastCosine = 0.5;   // between a face and its corners' normals
 
-struct Glb {
-  const std::string& where;
-  std::vector<Finding>& findings;
-  Json json;
-  std::string binary;
+/// Rounding moves each corner by half a cell's diagonal at most. A face that it turned by 60
+/// degrees is therefore lower than 2.65 steps: its height's and its longest side's slopes are at
+/// most that diagonal over their lengths, and the side is 2 / sqrt(3) times the height at least.
+constexpr double kThinnest = 2.65;
 
-  void report(const std::string& code, const std::string& place, const std::string& message) {
-    findings.push_back({code, where + (place.empty() ? "" : " " + place), message});
-  }
-};
-
-std::uint32_t u32(const std::string& bytes, std::size_t at) {
-  std::uint32_t value;
-  std::memcpy(&value, bytes.data() + at, 4);
-  return value;
-}
-
-bool open_container(Glb& glb, const std::string& bytes) {
-  const auto fail = [&](const char* cause) {
-    glb.report("glb-container", "", cause);
-    return false;
-  };
-  if (bytes.size() < 20 || bytes.compare(0, 4, "glTF") != 0 || u32(bytes, 4) != 2)
-    return fail("not a binary glTF 2.0");
-  if (u32(bytes, 8) != bytes.size()) return fail("the header's length is not the file's");
-  const std::size_t length = u32(bytes, 12);
-  if (bytes.compare(16, 4, "JSON") != 0 || length > bytes.size() - 20)
-    return fail("the first chunk is not JSON, or longer than the file");
-  glb.json = Json::parse(bytes.substr(20, length), nullptr, false);
-  if (!glb.json.is_object()) return fail("the JSON chunk does not parse");
-  const std::size_t bin = 20 + length;
-  if (bin + 8 > bytes.size()) return true;
-  if (bytes.compare(bin + 4, 4, std::string("BIN\0", 4)) != 0 ||
-      u32(bytes, bin) > bytes.size() - bin - 8)
-    return fail("the second chunk is not BIN, or longer than the file");
-  glb.binary = bytes.substr(bin + 8, u32(bytes, bin));
-  return true;
-}
-
-/// Bytes of a range of the BIN chunk; throws std::out_of_range with a readable message.
-std::string slice(const Glb& glb, const Json& range) {
-  const auto offset = range.value("byteOffset", std::size_t{0});
-  const auto length = range.at("byteLength").get<std::size_t>();
-  if (range.value("buffer", 0) != 0 || offset > glb.binary.size() ||
-      length > glb.binary.size() - offset)
-    throw std::out_of_range("a buffer view lies outside the BIN chunk");
-  return glb.binary.substr(offset, length);
-}
-
-struct View {
-  std::string bytes;
-  std::size_t stride = 0;  // 0: tight
-};
-
-View read_view(const Glb& glb, const Json& index) {
-  const Json& view = glb.json.at("bufferViews").at(index.get<std::size_t>());
-  const Json packed =
-      view.value("extensions", Json::object()).value("EXT_meshopt_compression", Json());
-  if (packed.is_null()) return {slice(glb, view), view.value("byteStride", std::size_t{0})};
-  const std::string payload = slice(glb, packed);
-  const auto count = packed.at("count").get<std::size_t>();
-  const auto stride = packed.at("byteStride").get<std::size_t>();
-  View out{{}, stride};
-  if (packed.at("mode") == "TRIANGLES") {
-    for (const std::uint32_t i : decode_meshopt_indices(payload, count))
-      out.bytes.append(reinterpret_cast<const char*>(&i), 4);
-    out.stride = 4;
-  } else {
-    out.bytes = decode_meshopt_vertices(payload, count, stride);
-  }
-  if (out.bytes.empty()) throw std::out_of_range("a meshopt stream does not decode");
-  return out;
-}
-
-double element(const std::string& bytes, std::size_t at, int type) {
-  const auto get = [&](auto value) {
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (type) {
-    case 5120:
-      return get(std::int8_t{});
-    case 5121:
-      return get(std::uint8_t{});
-    case 5122:
-      return get(std::int16_t{});
-    case 5123:
-      return get(std::uint16_t{});
-    case 5125:
-      return get(std::uint32_t{});
-    default:
-      return get(float{});
-  }
-}
-
-std::size_t size_of(int type) { return type <= 5121 ? 1 : type <= 5123 ? 2 : 4; }
-
-/// All numbers of an accessor with a buffer view, `components` an element.
-std::vector<double> read_accessor(const Glb& glb, const Json& accessor, std::size_t components) {
-  const View view = read_view(glb, accessor.at("bufferView"));
-  const int type = accessor.at("componentType");
-  const std::size_t size = size_of(type), tight = size * components;
-  const std::size_t stride = view.stride ? view.stride : tight, count = accessor.at("count");
-  const std::size_t offset = accessor.value("byteOffset", std::size_t{0});
-  if (count == 0 || offset + (count - 1) * stride + tight > view.bytes.size())
-    throw std::out_of_range("an accessor reaches beyond its buffer view");
-  const double scale = !accessor.value("normalized", false) ? 1 : type == 5120 ? 127 : 255;
-  std::vector<double> out;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < components; ++k)
-      out.push_back(element(view.bytes, offset + i * stride + k * size, type) / scale);
-  return out;
-}
-
+using Glb = CheckedGlb;
 using MeshContent = GlbContent::MeshContent;
 
 std::vector<Vec3> as_points(const std::vector<double>& values) {
@@ -143,11 +39,23 @@ std::vector<Vec3> as_points(const std::vector<double>& values) {
   return out;
 }
 
+/// Ids as they are stored; anything but a whole number becomes one that no table has.
+std::vector<std::uint32_t> as_ids(const std::vector<double>& values) {
+  std::vector<std::uint32_t> out;
+  for (const double v : values)
+    out.push_back(v >= 0 && v < 4294967295.0 && v == std::floor(v) ? static_cast<std::uint32_t>(v)
+                                                                   : 4294967295u);
+  return out;
+}
+
 /// Attributes by Draco unique id; false where the ids cannot be those of such attributes.
 bool read_draco(Glb& glb, const Json& primitive, const std::string& place, MeshContent& out) {
   const Json& extension = primitive.at("extensions").at("KHR_draco_mesh_compression");
-  const Json& view = glb.json.at("bufferViews").at(extension.at("bufferView").get<std::size_t>());
-  const DracoContent draco = decode_draco(slice(glb, view));
+  const Json& view = glb.json.at("bufferViews").at(whole_number(extension.at("bufferView")));
+  const std::string stream = slice(glb, view);
+  const DracoCounts stated = stated_counts(stream);
+  glb.spend(stated.faces + stated.vertices);
+  const DracoContent draco = decode_draco(stream);
   const auto values = [&](const char* name, int components) -> const std::vector<double>* {
     const auto found = draco.attributes.find(extension.at("attributes").value(name, -1));
     if (found == draco.attributes.end() || found->second.components != components) {
@@ -168,44 +76,56 @@ bool read_draco(Glb& glb, const Json& primitive, const std::string& place, MeshC
   if (extension.at("attributes").contains("_FEATURE_ID_0")) {
     const auto* ids = values("_FEATURE_ID_0", 1);
     if (!ids) return false;
-    for (const double id : *ids) out.features.push_back(static_cast<std::uint32_t>(id));
+    out.features = as_ids(*ids);
   }
   out.faces = draco.faces;
   const Json& accessors = glb.json.at("accessors");
   for (const auto& [name, accessor] : primitive.at("attributes").items())
-    if (accessors.at(accessor.get<std::size_t>()).at("count") != draco.vertices)
+    if (accessors.at(whole_number(accessor)).at("count") != draco.vertices)
       glb.report("draco-counts", place, name + "'s count is not the decoded number of vertices");
-  if (accessors.at(primitive.at("indices").get<std::size_t>()).at("count") !=
-      3 * draco.faces.size())
+  if (accessors.at(whole_number(primitive.at("indices"))).at("count") != 3 * draco.faces.size())
     glb.report("draco-counts", place, "the indices' count is not that of the decoded faces");
   return true;
 }
 
 bool read_plain(Glb& glb, const Json& primitive, const std::string& place, MeshContent& out) {
   const Json& attributes = primitive.at("attributes");
-  const auto accessor = [&](const Json& index) -> const Json& {
-    return glb.json.at("accessors").at(index.get<std::size_t>());
+  const auto read = [&](const Json& index, std::size_t components) {
+    return read_accessor(glb, glb.json.at("accessors").at(whole_number(index)), components);
   };
-  out.positions = as_points(read_accessor(glb, accessor(attributes.at("POSITION")), 3));
-  out.normals = as_points(read_accessor(glb, accessor(attributes.at("NORMAL")), 3));
+  out.positions = as_points(read(attributes.at("POSITION"), 3));
+  out.normals = as_points(read(attributes.at("NORMAL"), 3));
   if (attributes.contains("_FEATURE_ID_0"))
-    for (const double id : read_accessor(glb, accessor(attributes.at("_FEATURE_ID_0")), 1))
-      out.features.push_back(static_cast<std::uint32_t>(id));
-  const std::vector<double> indices = read_accessor(glb, accessor(primitive.at("indices")), 1);
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
-    out.faces.push_back({static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]),
-                         static_cast<int>(indices[i + 2])});
+    out.features = as_ids(read(attributes.at("_FEATURE_ID_0"), 1));
+  const std::vector<double> indices = read(primitive.at("indices"), 1);
   const auto beyond = static_cast<double>(out.positions.size());
-  if (std::any_of(indices.begin(), indices.end(), [&](double i) { return i >= beyond; })) {
+  if (!std::all_of(indices.begin(), indices.end(),
+                   [&](double i) { return i >= 0 && i < beyond && i == std::floor(i); })) {
     glb.report("accessor", place, "an index reaches beyond the vertices");
     return false;
   }
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    out.faces.push_back({static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]),
+                         static_cast<int>(indices[i + 2])});
   return true;
+}
+
+/// Corners and values that exist, for all that looks at them.
+bool is_whole(Glb& glb, const std::string& place, const MeshContent& mesh) {
+  const int count = static_cast<int>(mesh.positions.size());
+  const bool is_sound = std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Face& f) {
+    return std::all_of(f.begin(), f.end(), [&](int v) { return v >= 0 && v < count; });
+  });
+  if (!is_sound)
+    glb.report("accessor", place, "an index reaches beyond the vertices");
+  else if (mesh.normals.size() != mesh.positions.size())
+    glb.report("accessor", place, "normals and positions differ in number");
+  return is_sound && mesh.normals.size() == mesh.positions.size();
 }
 
 void check_bounds(Glb& glb, const Json& primitive, const std::string& place,
                   const MeshContent& mesh) {
-  const std::size_t index = primitive.at("attributes").at("POSITION");
+  const std::size_t index = whole_number(primitive.at("attributes").at("POSITION"));
   const Json& accessor = glb.json.at("accessors").at(index);
   Box box;
   for (const Vec3& p : mesh.positions) box.extend(to_gltf(p));
@@ -219,26 +139,43 @@ void check_bounds(Glb& glb, const Json& primitive, const std::string& place,
     }
 }
 
+/// The step of the grid that positions were rounded to: the largest power of two that all
+/// coordinates are multiples of.
+double step_of(const std::vector<Vec3>& positions) {
+  int least = std::numeric_limits<int>::max();
+  for (const Vec3& p : positions)
+    for (const double x : p) {
+      int exponent = 0;
+      if (x == 0 || !std::isfinite(x)) continue;
+      const auto digits =
+          static_cast<std::uint64_t>(std::ldexp(std::abs(std::frexp(x, &exponent)), 53));
+      least = std::min(least, exponent - 53 + std::countr_zero(digits));
+    }
+  return least == std::numeric_limits<int>::max() ? 0 : std::ldexp(1.0, least);
+}
+
+/// Facets' normals are exact, the corners rounded: what light and shading see is the normal, and a
+/// face that is thinner than rounding turns it is not seen.
+std::size_t count_turned_faces(const MeshContent& mesh) {
+  const double thinnest = kThinnest * step_of(mesh.positions);
+  return std::count_if(mesh.faces.begin(), mesh.faces.end(), [&](const Face& f) {
+    const Vec3 a = mesh.positions[f[0]], ab = mesh.positions[f[1]] - a,
+               ac = mesh.positions[f[2]] - a, cross = ab.cross(ac);
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    return cross.norm() > thinnest * longest &&
+           cross.normalized().dot(mesh.normals[f[0]]) < kLeastCosine;
+  });
+}
+
 void check_surface(Glb& glb, const std::string& place, const MeshContent& mesh) {
-  if (mesh.normals.size() != mesh.positions.size()) {
-    glb.report("accessor", place, "normals and positions differ in number");
-    return;
-  }
-  std::size_t not_finite = 0, not_unit = 0, against = 0;
+  std::size_t not_finite = 0, not_unit = 0;
   for (const Vec3& p : mesh.positions) not_finite += !p.allFinite();
   for (const Vec3& n : mesh.normals) not_unit += !(std::abs(n.norm() - 1) < 0.05);
-  for (const Face& f : mesh.faces) {
-    const Vec3 cross = (mesh.positions[f[1]] - mesh.positions[f[0]])
-                           .cross(mesh.positions[f[2]] - mesh.positions[f[0]]);
-    if (cross.norm() < 1e-3) continue;  // a sliver of rounded corners has any direction
-    against += cross.normalized().dot(mesh.normals[f[0]]) < kLeastCosine;
-  }
   if (not_finite) glb.report("positions", place, "positions that are not finite");
   if (not_unit)
     glb.report("normals", place, std::to_string(not_unit) + " normals are not of length 1");
-  if (against > mesh.faces.size() / 100)
-    glb.report("normals", place,
-               std::to_string(against) + " faces are wound against their normals");
+  if (const std::size_t turned = count_turned_faces(mesh); turned > 0)
+    glb.report("normals", place, std::to_string(turned) + " faces are wound against their normals");
 }
 
 void check_features(Glb& glb, const Json& primitive, const std::string& place,
@@ -247,7 +184,7 @@ void check_features(Glb& glb, const Json& primitive, const std::string& place,
       primitive.value("extensions", Json::object()).value("EXT_mesh_features", Json());
   if (features.is_null()) return;
   const Json& ids = features.at("featureIds").at(0);
-  const std::size_t count = ids.at("featureCount");
+  const std::size_t count = whole_number(ids.at("featureCount"));
   if (mesh.features.size() != mesh.positions.size())
     glb.report("features", place, "no feature id for every vertex");
   if (std::any_of(mesh.features.begin(), mesh.features.end(),
@@ -265,15 +202,15 @@ void check_features(Glb& glb, const Json& primitive, const std::string& place,
 
 std::string column(const Glb& glb, const Json& properties, const char* name,
                    const char* part = "values") {
-  return slice(glb, glb.json["bufferViews"].at(properties.at(name).at(part).get<std::size_t>()));
+  return slice(glb, glb.json.at("bufferViews").at(whole_number(properties.at(name).at(part))));
 }
 
 void check_alignment(Glb& glb, const Json& properties) {
   for (const auto& [property, parts] : properties.items())
     for (const char* part : {"values", "stringOffsets"}) {
       if (!parts.contains(part)) continue;
-      const Json& view = glb.json.at("bufferViews").at(parts[part].get<std::size_t>());
-      if (view.value("byteOffset", std::size_t{0}) % 8 != 0)
+      const Json& view = glb.json.at("bufferViews").at(whole_number(parts[part]));
+      if (whole_number_of(view, "byteOffset") % 8 != 0)
         glb.report("table", property, "its bytes do not start at a multiple of 8");
     }
 }
@@ -284,7 +221,7 @@ void read_table(Glb& glb, GlbContent& out) {
       glb.json.value("extensions", Json::object()).value("EXT_structural_metadata", Json());
   if (metadata.is_null()) return;
   const Json& table = metadata.at("propertyTables").at(0);
-  const std::size_t count = table.at("count");
+  const std::size_t count = whole_number(table.at("count"));
   const Json& properties = table.at("properties");
   check_alignment(glb, properties);
   const std::string names = column(glb, properties, "name"),
@@ -293,22 +230,22 @@ void read_table(Glb& glb, GlbContent& out) {
                     coarsest = column(glb, properties, "coarsest_layer"),
                     gsds = column(glb, properties, "gsd"),
                     deviations = column(glb, properties, "deviation");
-  if (offsets.size() != 4 * (count + 1) || gsds.size() != 4 * count ||
+  if (count > glb.binary.size() || offsets.size() != 4 * (count + 1) || gsds.size() != 4 * count ||
       deviations.size() != 4 * count || layers.size() != 2 * count ||
       coarsest.size() != 2 * count) {
     glb.report("table", "name", "columns are not as long as the table");
     return;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t from = u32(offsets, 4 * i), to = u32(offsets, 4 * i + 4);
+    const std::uint32_t from = u32_at(offsets, 4 * i), to = u32_at(offsets, 4 * i + 4);
     if (from > to || to > names.size()) {
       glb.report("table", "name", "string offsets fall or reach beyond the strings");
       return;
     }
     const GlbContent::Row row{names.substr(from, to - from),
-                              static_cast<int>(element(layers, 2 * i, 5122)),
-                              static_cast<int>(element(coarsest, 2 * i, 5122)),
-                              element(gsds, 4 * i, 5126), element(deviations, 4 * i, 5126)};
+                              static_cast<int>(element_at(layers, 2 * i, 5122)),
+                              static_cast<int>(element_at(coarsest, 2 * i, 5122)),
+                              element_at(gsds, 4 * i, 5126), element_at(deviations, 4 * i, 5126)};
     if (!(row.gsd >= 0) || !(row.deviation >= 0))
       glb.report("table", "gsd", "a gsd or deviation below zero");
     if (row.coarsest_layer > row.layer)
@@ -319,17 +256,22 @@ void read_table(Glb& glb, GlbContent& out) {
 
 /// Whether every position of one mesh is one of the other's, to within what both are rounded by,
 /// and both have as many faces.
-bool is_alike(const MeshContent& a, const MeshContent& b) {
-  constexpr double kReach = 0.006;  // metres: a default grid, and the finest level's
+bool is_alike(Glb& glb, const MeshContent& a, const MeshContent& b) {
+  constexpr double kReach = 0.006;              // metres: a default grid, and the finest level's
+  const Vec3 oblique(0.36, 0.48, 0.8);          // few walls lie across it
+  const double reach = kReach * oblique.sum();  // along it
   if (a.faces.size() != b.faces.size() || a.positions.size() != b.positions.size()) return false;
-  const auto by_x = [](const Vec3& u, const Vec3& v) { return u.x() < v.x(); };
-  std::vector<Vec3> sorted = b.positions;
-  std::sort(sorted.begin(), sorted.end(), by_x);
+  std::vector<std::pair<double, const Vec3*>> sorted;
+  for (const Vec3& p : b.positions) sorted.emplace_back(oblique.dot(p), &p);
+  std::sort(sorted.begin(), sorted.end());
   return std::all_of(a.positions.begin(), a.positions.end(), [&](const Vec3& p) {
-    const Vec3 before = p - Vec3::Constant(kReach);
-    for (auto q = std::lower_bound(sorted.begin(), sorted.end(), before, by_x);
-         q != sorted.end() && q->x() <= p.x() + kReach; ++q)
-      if ((*q - p).cwiseAbs().maxCoeff() <= kReach) return true;
+    const double along = oblique.dot(p);
+    const auto first = std::lower_bound(sorted.begin(), sorted.end(),
+                                        std::pair<double, const Vec3*>(along - reach, nullptr));
+    for (auto q = first; q != sorted.end() && q->first <= along + reach; ++q) {
+      glb.spend(1);
+      if ((*q->second - p).cwiseAbs().maxCoeff() <= kReach) return true;
+    }
     return false;
   });
 }
@@ -358,45 +300,52 @@ void check_coverage(Glb& glb, const std::string& place, const Json& node,
   }
 }
 
+std::set<std::size_t> scene_roots(const Json& json) {
+  std::set<std::size_t> roots;
+  for (const Json& scene : json.value("scenes", Json::array()))
+    for (const Json& root : scene.value("nodes", Json::array())) roots.insert(whole_number(root));
+  return roots;
+}
+
 /// The levels' nodes, finest first: in no scene, named, lighter and lighter, for farther and
 /// farther away, no two alike.
 void check_levels(Glb& glb, const GlbContent& content) {
   const Json nodes = glb.json.value("nodes", Json::array());
+  const std::set<std::size_t> roots = scene_roots(glb.json);
+  const auto mesh = [&](const Json& of) -> const MeshContent& {
+    return content.meshes.at(whole_number(of.at("mesh")));
+  };
+  const auto layer = [](const Json& of) {
+    return of.value("extras", Json::object()).value("layer", -1);
+  };
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Json lod = nodes[n].value("extensions", Json::object()).value("MSFT_lod", Json());
     if (lod.is_null()) continue;
     const std::string place = "node " + std::to_string(n);
     std::vector<std::size_t> levels = {n};
-    for (const Json& id : lod.at("ids")) levels.push_back(id.get<std::size_t>());
+    for (const Json& id : lod.at("ids")) levels.push_back(whole_number(id));
     for (std::size_t i = 0; i < levels.size(); ++i) {
       const Json& node = nodes.at(levels[i]);
       if (!node.value("name", std::string()).ends_with("_LOD" + std::to_string(i)))
         glb.report("lod-names", place,
                    "level " + std::to_string(i) + " is not named _LOD" + std::to_string(i));
       if (i == 0) continue;
-      for (const Json& scene : glb.json.value("scenes", Json::array()))
-        for (const Json& root : scene.value("nodes", Json::array()))
-          if (root == levels[i]) glb.report("lod-nodes", place, "a lower level stands in a scene");
+      if (roots.contains(levels[i]))
+        glb.report("lod-nodes", place, "a lower level stands in a scene");
       const Json& finer = nodes.at(levels[i - 1]);
-      const auto mesh = [&](const Json& of) -> const MeshContent& {
-        return content.meshes.at(of.at("mesh").get<std::size_t>());
-      };
-      const auto layer = [](const Json& of) {
-        return of.value("extras", Json::object()).value("layer", -1);
-      };
+      glb.spend(mesh(node).positions.size());
       if (layer(node) >= layer(finer) || mesh(node).faces.size() > mesh(finer).faces.size())
         glb.report("lod-order", place, "levels do not go from fine to coarse");
       if (!(gsd_of(node) > gsd_of(finer)))
         glb.report("lod-gsd", place, "a coarser level's gsd is not greater than the finer one's");
-      if (is_alike(mesh(node), mesh(finer)))
+      if (is_alike(glb, mesh(node), mesh(finer)))
         glb.report("lod-alike", place, "two levels are the same mesh");
     }
     std::vector<double> gsds;
     for (const std::size_t level : levels) gsds.push_back(gsd_of(nodes.at(level)));
     if (gsds.front() != 0) glb.report("lod-gsd", place, "the finest level's gsd is not 0");
     Box box;
-    for (const Vec3& p : content.meshes.at(nodes[n].at("mesh").get<std::size_t>()).positions)
-      box.extend(p);
+    for (const Vec3& p : mesh(nodes[n]).positions) box.extend(p);
     check_coverage(glb, place, nodes[n], gsds, box.diagonal());
   }
 }
@@ -405,7 +354,7 @@ void check_levels(Glb& glb, const GlbContent& content) {
 
 GlbContent check_glb(const std::string& bytes, const std::string& where,
                      std::vector<Finding>& findings) {
-  Glb glb{where, findings, {}, {}};
+  Glb glb{where, findings, {}, {}, 0};
   GlbContent out;
   if (!open_container(glb, bytes)) return out;
   try {
@@ -417,7 +366,8 @@ GlbContent check_glb(const std::string& bytes, const std::string& where,
       const bool is_draco =
           primitive.value("extensions", Json::object()).contains("KHR_draco_mesh_compression");
       MeshContent& mesh = out.meshes.emplace_back();
-      if (!(is_draco ? read_draco : read_plain)(glb, primitive, place, mesh)) {
+      if (!(is_draco ? read_draco : read_plain)(glb, primitive, place, mesh) ||
+          !is_whole(glb, place, mesh)) {
         mesh = {};
         continue;
       }
@@ -435,6 +385,10 @@ GlbContent check_glb(const std::string& bytes, const std::string& where,
     glb.report("json", "", error.what());
   } catch (const std::out_of_range& error) {
     glb.report("accessor", "", error.what());
+  } catch (const std::length_error& error) {
+    glb.report("too-large", "", error.what());
+  } catch (const std::bad_alloc&) {
+    glb.report("too-large", "", "what it states does not fit into memory");
   }
   out.json = std::move(glb.json);
   return out;

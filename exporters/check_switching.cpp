@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "check_files.h"
+
 namespace colod {
 
 using Json = nlohmann::json;
@@ -45,7 +47,7 @@ void ScopeCheck::report(std::vector<Finding>& findings) const {
 
 void check_lods(const std::string& text, const std::string& where, ScopeCheck& scope,
                 std::vector<Finding>& findings) {
-  const Json lods = Json::parse(text, nullptr, false);
+  const Json lods = parse_json(text);
   if (!lods.is_object() || !lods.contains("buildings")) {
     findings.push_back({"json", where, "not a list of levels"});
     return;

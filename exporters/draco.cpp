@@ -40,6 +40,10 @@ constexpr int kDecodingSpeed = 0;
 /// matters where a prediction is a few bytes of a few hundred, so larger meshes do without.
 constexpr std::size_t kStarts = 8, kMaxFacesToTurn = 1000;
 
+/// Faces or vertices that a byte of a stream stands for at most: a dense regular grid takes about a
+/// bit a face.
+constexpr std::size_t kBestPacking = 64;
+
 constexpr int kMaxIntegerId = 65535;  // beyond it glTF wants floats, exact to 2^24
 
 [[noreturn]] void refuse(const std::string& cause) { throw Error(Stage::kOutput, "draco", cause); }
@@ -234,7 +238,32 @@ DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid) {
   return result;
 }
 
+DracoCounts stated_counts(const std::string& bytes) {
+  constexpr std::size_t kHeader = 11;
+  const auto fail = [](const char* cause) -> DracoCounts {
+    throw Error(Stage::kInput, "draco", cause);
+  };
+  if (bytes.size() < kHeader + 1 || bytes.compare(0, 5, "DRACO") != 0) return fail("no stream");
+  if (bytes[5] != 2 || bytes[6] != 2 || bytes[7] != 1) return fail("no mesh of version 2.2");
+  if (bytes[9] != 0 || bytes[10] != 0) return fail("a stream with metadata is not read");
+  const bool is_edgebreaker = bytes[8] == 1;  // which has a byte more, and vertices before faces
+  std::size_t at = kHeader + (is_edgebreaker ? 1 : 0);
+  const auto varint = [&] {
+    std::size_t value = 0;
+    for (int shift = 0; shift < 35 && at < bytes.size(); shift += 7) {
+      const auto byte = static_cast<unsigned char>(bytes[at++]);
+      value |= static_cast<std::size_t>(byte & 127) << shift;
+      if (byte < 128) break;
+    }
+    return value;
+  };
+  const std::size_t first = varint(), second = varint();
+  if (std::max(first, second) > kBestPacking * bytes.size()) return fail("cannot hold its counts");
+  return is_edgebreaker ? DracoCounts{second, first} : DracoCounts{first, second};
+}
+
 DracoContent decode_draco(const std::string& bytes) {
+  stated_counts(bytes);
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;

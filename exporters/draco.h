@@ -64,7 +64,15 @@ struct DracoContent {
   std::map<int, Attribute> attributes;
 };
 
-/// Throws Error{kInput} when it does not decode.
+/// Faces and vertices as the stream's header states them, before any memory is taken for them.
+/// Throws Error{kInput} when it is no stream of version 2.2, which all writers in use make, or when
+/// so few bytes cannot hold them.
+struct DracoCounts {
+  std::size_t faces = 0, vertices = 0;
+};
+DracoCounts stated_counts(const std::string& bytes);
+
+/// Throws Error{kInput} when it does not decode, or states more than it can hold.
 DracoContent decode_draco(const std::string& bytes);
 
 }  // namespace colod

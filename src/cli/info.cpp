@@ -1,12 +1,12 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
 #include "../../exporters/check.h"
+#include "../../exporters/check_files.h"
 #include "../error.h"
 #include "../metrics.h"
 #include "../parallel.h"
@@ -65,13 +65,15 @@ Json count_tiles(const nlohmann::json& root) {
 }
 
 Json tileset_json(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  nlohmann::json tileset = nlohmann::json::parse(in, nullptr, false);
-  if (!tileset.is_object() || !tileset.contains("root") || !tileset["root"].is_object())
-    throw Error(Stage::kInput, path, "not a tileset: no root tile");
-  Json json = count_tiles(tileset["root"]);
-  json["asset"] = tileset["asset"];
-  json["geometricError"] = tileset["geometricError"];
+  const nlohmann::json tileset = parse_json(read_regular(path));
+  const auto root = tileset.is_object() ? tileset.find("root") : tileset.end();
+  if (root == tileset.end() || !root->is_object())
+    throw Error(Stage::kInput, path,
+                "not a tileset: no root tile in at most " + std::to_string(kDeepestJson) +
+                    " nested levels of JSON");
+  Json json = count_tiles(*root);
+  json["asset"] = tileset.value("asset", nlohmann::json());
+  json["geometricError"] = tileset.value("geometricError", nlohmann::json());
   return json;
 }
 
