@@ -99,6 +99,28 @@ bool Store::Impl::has_row(const char* sql, const std::string& name) const {
   return s.bind(name).step();
 }
 
+std::vector<std::string> Store::Impl::schema() const {
+  std::vector<std::string> made;
+  Statement s = read("SELECT name, sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY name");
+  while (s.step()) {
+    made.push_back(s.text());
+    made.back() += ' ' + s.text();
+  }
+  return made;
+}
+
+/// A file may say anything of what its tables are, and a view or trigger runs when one is read.
+void Store::Impl::check_schema() const {
+  Impl own;
+  if (sqlite3_open(":memory:", &own.db) != SQLITE_OK)
+    throw Error(Stage::kProcess, path, "no memory for its schema");
+  own.execute(kSchema, Stage::kProcess);
+  if (schema() != own.schema())
+    throw Error(
+        Stage::kInput, path,
+        "damaged: its tables are not those of a scene file of format " + std::to_string(kFormat));
+}
+
 Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   const int flags = SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0);
@@ -109,7 +131,10 @@ Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
   Statement version = impl_->read("PRAGMA user_version");
   version.step();
   const std::int64_t found = version.integer();
-  if (found == kFormat) return;
+  if (found == kFormat) {
+    impl_->check_schema();
+    return;
+  }
   if (found != 0)
     throw Error(Stage::kInput, path,
                 "is a scene file of format " + std::to_string(found) +

@@ -1,12 +1,14 @@
 // Inside the store: SQLite's statements, and the rows of one building.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "error.h"
@@ -16,6 +18,11 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace colod {
+
+/// Records of doubles and nothing else.
+template <typename T>
+constexpr bool is_doubles = std::is_same_v<T, Vec3> || std::is_same_v<T, std::array<double, 64>> ||
+                            std::is_same_v<T, VisibleStep>;
 
 /// One prepared statement of SQLite: bind in order, step, read columns in order.
 class Statement {
@@ -54,6 +61,8 @@ class Statement {
       throw Error(Stage::kInput, path_, "damaged: an array has a wrong length");
     std::vector<T> v(bytes.size() / sizeof(T));
     if (!bytes.empty()) std::memcpy(static_cast<void*>(v.data()), bytes.data(), bytes.size());
+    if constexpr (is_doubles<T>)
+      check_numbers({reinterpret_cast<const double*>(v.data()), v.size() * sizeof(T) / 8});
     return v;
   }
   template <typename T>
@@ -66,6 +75,9 @@ class Statement {
  private:
   std::span<const std::byte> blob();  ///< until the next step
   void check(int code) const;
+  /// What follows takes finite numbers, no farther than a reader of meshes lets them be, for
+  /// granted. Throws Error{kInput}.
+  void check_numbers(std::span<const double> numbers) const;
 
   sqlite3* db_;
   const std::string& path_;
@@ -97,6 +109,10 @@ struct Store::Impl {
   /// All of `body` or nothing.
   void transaction(const std::function<void()>& body) const;
   bool has_row(const char* sql, const std::string& name) const;
+  /// All tables, views and triggers as they were made.
+  std::vector<std::string> schema() const;
+  /// Throws Error{kInput} where they are not a scene file's own.
+  void check_schema() const;
 
   // store_rows.cpp
   void put_building(const Building& b, int order, const std::string& key) const;

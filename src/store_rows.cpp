@@ -53,6 +53,14 @@ std::vector<std::vector<int>> unflatten(const std::vector<int>& flat, const std:
   return rings;
 }
 
+/// Where a reader of meshes lets coordinates be, about an origin that is one as well.
+void check_place(std::span<const Vec3> points, const std::string& path) {
+  constexpr double kFarthest = 2e12;  // metres
+  for (const Vec3& p : points)
+    if (!(p.cwiseAbs().maxCoeff() <= kFarthest))
+      throw Error(Stage::kInput, path, "damaged: a place is farther away than any");
+}
+
 /// What the other rooms take for granted: indices into arrays of `size`, none negative.
 void check_range(std::span<const int> indices, std::size_t size, const std::string& path) {
   for (const int i : indices)
@@ -217,6 +225,7 @@ void Store::Impl::get_building(Building& b) const {
     throw Error(Stage::kInput, path, "holds no building '" + b.source.name + "'");
   b.source.path = s.text();
   for (int i = 0; i < 3; ++i) b.frame.origin[i] = s.real();
+  check_place({&b.frame.origin, 1}, path);
   b.frame.yaw = s.real();
   b.planes.distance = s.real();
   b.planes.total_area = s.real();
@@ -231,6 +240,8 @@ void Store::Impl::get_building(Building& b) const {
   b.failure = s.text();
   read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
   read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
+  check_place(b.source.mesh.vertices, path);
+  check_place(b.source.cloud.points, path);
   check_range(b.source.mesh.faces, b.source.mesh.vertices.size(), path);
   if (!b.source.cloud.normals.empty() &&
       b.source.cloud.normals.size() != b.source.cloud.points.size())
@@ -318,6 +329,7 @@ void Store::Impl::get_layers(Building& b) const {
     const auto rings = unflatten(s.array<int>(), path);
     std::size_t next = 0;
     for (const FacetRecord& f : facets) {
+      check_place({&f.normal, 1}, path);
       const auto count = static_cast<std::size_t>(std::max(f.rings, 0));
       if (count > rings.size() - next)
         throw Error(Stage::kInput, path, "damaged: a facet has lost its rings");
@@ -328,6 +340,7 @@ void Store::Impl::get_layers(Building& b) const {
     }
     layer.mesh.triangles = s.array<Face>();
     layer.mesh.facet_of_triangle = s.array<int>();
+    check_place(layer.mesh.vertices, path);
     check_range(layer.mesh, path);
     b.layers.push_back(std::move(layer));
   }

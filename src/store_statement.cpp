@@ -4,6 +4,8 @@
 
 #include <sqlite3.h>
 
+#include <cmath>
+
 #include "store_parts.h"
 
 namespace colod {
@@ -62,13 +64,24 @@ std::string Statement::text() {
   return data ? std::string(data, static_cast<std::size_t>(size)) : std::string();
 }
 
-double Statement::real() { return sqlite3_column_double(statement_, read_++); }
+double Statement::real() {
+  const double value = sqlite3_column_double(statement_, read_++);
+  check_numbers({&value, 1});
+  return value;
+}
 
 std::int64_t Statement::integer() { return sqlite3_column_int64(statement_, read_++); }
 
 std::span<const std::byte> Statement::blob() {
   const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(statement_, read_));
   return {data, static_cast<std::size_t>(sqlite3_column_bytes(statement_, read_++))};
+}
+
+void Statement::check_numbers(std::span<const double> numbers) const {
+  constexpr double kMost = 1e25;  // square metres of a place 1e12 m wide
+  for (const double x : numbers)
+    if (!(std::abs(x) <= kMost))
+      throw Error(Stage::kInput, path_, "damaged: a number is not finite, or out of all bounds");
 }
 
 void Statement::check(int code) const {
