@@ -76,6 +76,7 @@ int build(const BuildArguments& a) {
   const std::optional<Prior> prior = read_prior(a.prior);
   const std::vector<BuildingSights> sights = read_sights(a.prior, a.options.layers, log);
   const Inventory inventory = take_inventory(a.inputs, a.read);
+  check_cost(a.options, inventory.building_count());
   make_folder(a.output.out);  // fails now rather than after all the work
   TemporaryStore store;
   Judge judge(truth, store);

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -11,6 +10,8 @@
 #include "../parallel.h"
 #include "cli.h"
 #include "input_options.h"
+#include "log.h"
+#include "numbers.h"
 
 namespace colod::cli {
 namespace {
@@ -89,7 +90,7 @@ int eval_truth(const EvalArguments& a) {
   const Json json{{"truth", a.truth},
                   {"buildings", judged},
                   {"types", Json::parse(consistency_json(tally_parts(parts, layers)))}};
-  std::printf("%s\n", json.dump(2).c_str());
+  print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
 
@@ -122,7 +123,7 @@ int eval(const EvalArguments& a) {
       {"rms_distance", d.rms_a_to_b},
       {"samples", a.distance.samples}};
   if (a.has_lfd) json["light_field_distance"] = light_fields_apart(reference, model);
-  std::printf("%s\n", json.dump(2).c_str());
+  print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
 
@@ -140,13 +141,13 @@ Run add_eval(CLI::App& app) {
       ->check(CLI::ExistingFile);
   add_input_options(app, a->read);
   app.add_option("--samples", a->distance.samples, "area-uniform samples a side")
-      ->check(CLI::Range(1, 100000000));
+      ->check(number_between(1, 100000000));
   app.add_option("--seed", a->distance.seed, "of the samples")
-      ->check(CLI::Range(0.0, 9007199254740992.0));
+      ->check(number_between(0.0, 9007199254740992.0));
   app.add_flag("--lfd", a->has_lfd,
                "also the light field distance: how alike both look from all sides, 0 = the same");
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
-      ->check(CLI::Range(0, 4096));
+      ->check(number_between(0, 4096));
   return [a] { return eval(*a); };
 }
 

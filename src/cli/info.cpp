@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "../parallel.h"
 #include "cli.h"
 #include "input_options.h"
+#include "log.h"
 
 namespace colod::cli {
 namespace {
@@ -84,7 +84,7 @@ int check(const std::string& path) {
   for (const Finding& f : findings)
     list.push_back({{"code", f.code}, {"where", f.where}, {"message", f.message}});
   const Json json = {{"file", path}, {"faults", list.size()}, {"findings", list}};
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return findings.empty() ? 0 : 1;
 }
 
@@ -107,7 +107,7 @@ int info(const InfoArguments& a) {
     json["warnings"] = source.warnings;
   }
   json["file"] = file;
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
 

@@ -3,8 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
+
+#include "../error.h"
 
 namespace colod::cli {
 namespace {
@@ -24,6 +28,14 @@ std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
   return text;
+}
+
+void print_answer(const std::string& text) {
+  const bool is_whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+                        std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0;
+  if (!is_whole)
+    throw Error(Stage::kOutput, "stdout",
+                std::string("the answer cannot be written: ") + std::strerror(errno));
 }
 
 Log::Log(bool is_quiet, bool is_json)

@@ -10,6 +10,10 @@ enum class Level { kInfo, kWarning, kError };
 /// File names and damaged files hold anything; a message is one line without control characters.
 std::string one_line(std::string text);
 
+/// What a command answers, on stdout, with a newline. Throws Error{kOutput} where it does not get
+/// there whole: a full disk, a closed pipe.
+void print_answer(const std::string& text);
+
 class Log {
  public:
   Log(bool is_quiet, bool is_json);

@@ -33,6 +33,10 @@ void end_between_files() {
   }).detach();
 }
 
+/// A limit on the size of files is an error like a full disk, with a message and nothing left
+/// half-written.
+void let_large_writes_fail() { std::signal(SIGXFSZ, SIG_IGN); }
+
 int run(int argc, char** argv) {
   CLI::App app{
       "colod: chains of clean, watertight levels of detail, consistent over all buildings of a "
@@ -73,6 +77,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     end_between_files();
+    let_large_writes_fail();
     return run(argc, argv);
   } catch (const colod::Error& e) {
     std::fprintf(stderr, "colod: %s\n", colod::cli::one_line(e.what()).c_str());

@@ -22,6 +22,7 @@
 #include "../report_pictures.h"
 #include "../stopwatch.h"
 #include "../store.h"
+#include "numbers.h"
 
 namespace colod::cli {
 namespace {
@@ -138,6 +139,16 @@ std::vector<Encoded> encode_building(const ExportBuilding& out, const SwitchFact
   return files;
 }
 
+/// In the order of names: in what order a scene file grew shows in no tile.
+std::vector<Building*> by_name(Scene& scene) {
+  std::vector<Building*> sorted;
+  for (Building& b : scene.buildings) sorted.push_back(&b);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Building* a, const Building* b) {
+    return a->source.name < b->source.name;
+  });
+  return sorted;
+}
+
 /// A building that cannot be encoded fails alone; only what cannot be written ends the run.
 void write_building(const ExportBuilding& out, const SwitchFacts& facts, const OutputArguments& a,
                     Building& b) {
@@ -197,15 +208,15 @@ void add_switch_options(CLI::App& app, SwitchOptions& o) {
          "--visual-error", o.visual_error,
          "with --switch visual: a change may be as large as a square of this side [pixels], "
          "default 12")
-      ->check(CLI::Range(1.0, 32.0));
+      ->check(number_between(1.0, 32.0));
   app.add_option("--pixel-error", o.pixel_error,
                  "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
                  "may be wrong when it is shown, default 2")
-      ->check(CLI::Range(0.01, 1e4));
+      ->check(number_between(0.01, 1e4));
   app.add_option("--switch-share", o.share,
                  "with --switch-scope scene: the share of buildings whose own bound is kept, "
                  "default 0.9")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_between(0.0, 1.0));
 }
 
 void add_output_options(CLI::App& app, OutputArguments& a) {
@@ -226,17 +237,18 @@ void add_output_options(CLI::App& app, OutputArguments& a) {
   app.add_option("--quantization", a.quantization,
                  "how far rounding may move a vertex [m], a third of it on the finest layer, "
                  "default 0.01")
-      ->check(CLI::Range(1e-5, 1.0));
+      ->check(number_between(1e-5, 1.0));
   app.add_option(
       "--crs", a.crs,
       "where on Earth the input is: EPSG:n of a projected system, EPSG:n+m with heights, "
       "or local; default: what metadata.xml, ODM or Pix4D files beside the input say");
   app.add_option("--origin", a.origin,
                  "added to the input's coordinates: easting,northing[,height] in --crs; without "
-                 "--crs latitude,longitude[,height] of the input's origin");
+                 "--crs latitude,longitude[,height] of the input's origin")
+      ->check(position());
   app.add_option("--target-sse", a.target_sse,
                  "the screen-space error that clients refine at [pixels], default 16")
-      ->check(CLI::Range(0.01, 1e4));
+      ->check(number_between(0.01, 1e4));
   add_switch_options(app, a.switching);
   app.add_flag("--no-report-html", a.has_no_page,
                "report.json only, no report.html and no pictures for it");
@@ -247,9 +259,9 @@ void write_outputs(Scene& scene, const OutputArguments& a, const Log& log) {
   const SwitchFacts facts = switch_facts(scene.switching);
   std::vector<ExportBuilding> buildings;
   std::vector<Building*> sources;
-  for (Building& b : scene.buildings)
-    if (ExportBuilding out = export_building(b); !out.levels.empty())
-      buildings.push_back(std::move(out)), sources.push_back(&b);
+  for (Building* b : by_name(scene))
+    if (ExportBuilding out = export_building(*b); !out.levels.empty())
+      buildings.push_back(std::move(out)), sources.push_back(b);
   parallel_for(buildings.size(), [&](std::size_t i) {
     Stopwatch own(sources[i]->timings.export_);
     write_building(buildings[i], facts, a, *sources[i]);

@@ -8,6 +8,7 @@
 #include "../parallel.h"
 #include "cli.h"
 #include "input_options.h"
+#include "numbers.h"
 
 namespace colod::cli {
 namespace {
@@ -61,15 +62,17 @@ Run add_preview(CLI::App& app) {
       ->required();
   app.add_option("-o,--out", a->out, "PNG to write")->required();
   add_input_options(app, a->read);
-  app.add_option("--columns", a->columns, "pictures a row, default 4")->check(CLI::Range(1, 100));
-  app.add_option("--width", a->preview.width, "of a picture")->check(CLI::Range(16, 8192));
-  app.add_option("--height", a->preview.height, "of a picture")->check(CLI::Range(16, 8192));
+  app.add_option("--columns", a->columns, "pictures a row, default 4")
+      ->check(number_between(1, 100));
+  app.add_option("--width", a->preview.width, "of a picture")->check(number_between(16, 8192));
+  app.add_option("--height", a->preview.height, "of a picture")->check(number_between(16, 8192));
   app.add_option("--azimuth", a->preview.azimuth_deg,
-                 "where the camera stands [deg], 0 = south of the building");
+                 "where the camera stands [deg], 0 = south of the building")
+      ->check(number_between(-360.0, 360.0));
   app.add_option("--elevation", a->preview.elevation_deg, "of the camera [deg]")
-      ->check(CLI::Range(-90.0, 90.0));
+      ->check(number_between(-90.0, 90.0));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
-      ->check(CLI::Range(0, 4096));
+      ->check(number_between(0, 4096));
   return [a] { return preview(*a); };
 }
 

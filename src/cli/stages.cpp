@@ -15,6 +15,7 @@
 #include "../store.h"
 #include "cli.h"
 #include "input_options.h"
+#include "numbers.h"
 #include "output.h"
 #include "pipeline_options.h"
 
@@ -37,6 +38,7 @@ int segment(const StageArguments& a) {
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   const Inventory inventory = take_inventory(a.inputs, a.read);
+  check_cost(a.options, inventory.building_count());
   Scene problems;
   problems.failures = inventory.failures;
   problems.warnings = inventory.warnings;
@@ -223,7 +225,7 @@ Run add_analyze(CLI::App& app) {
   auto a = add_scene_files(app);
   add_prior_option(app, a->prior);
   app.add_option("--gap", a->gap, "layer 0 is good enough when proven to be this near to the best")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_between(0.0, 1.0));
   return [a] { return analyze(*a); };
 }
 

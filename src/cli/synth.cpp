@@ -6,6 +6,7 @@
 #include "../../exporters/files.h"
 #include "../parallel.h"
 #include "cli.h"
+#include "numbers.h"
 
 namespace colod::cli {
 namespace {
@@ -37,16 +38,16 @@ Run add_synth(CLI::App& app) {
   auto a = std::make_shared<SynthArguments>();
   app.add_option("-o,--out", a->out, "folder to write to")->required();
   app.add_option("--buildings", a->options.buildings, "how many, default 20")
-      ->check(CLI::Range(1, 10000));
+      ->check(number_between(1, 10000));
   app.add_option("--seed", a->options.seed, "of everything drawn at random, default 1")
-      ->check(CLI::Range(0.0, 9007199254740992.0));
+      ->check(number_between(0.0, 9007199254740992.0));
   app.add_flag("--scan", a->options.is_scan, "as a simulated photogrammetry mesh");
   app.add_option("--noise", a->options.noise, "sigma of the scan's noise [m], default 0.025")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_between(0.0, 1.0));
   app.add_option("--density", a->options.density, "samples of the scan per m2, default 40")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(number_between(1.0, 1000.0));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
-      ->check(CLI::Range(0, 4096));
+      ->check(number_between(0, 4096));
   return [a] { return synth(*a); };
 }
 
