@@ -103,6 +103,17 @@ struct Triangles {
   std::vector<int> polygon;
 };
 
+/// Ear clipping takes up to the cube of a polygon's corners: half a second for the most that is
+/// read.
+void check_polygons(const std::string& path, const RawFile& raw) {
+  constexpr int kMostCorners = 5000;
+  for (int f = 0; f < raw.face_count(); ++f)
+    if (const int corners = raw.face_end(f) - raw.face_begin[f]; corners > kMostCorners)
+      mesh_io::fail(path, "face " + std::to_string(f) + " has " + std::to_string(corners) +
+                              " corners, more than the " + std::to_string(kMostCorners) +
+                              " that are read: triangulate it first");
+}
+
 /// Polygons with unusable corners are left out and counted in `dropped`.
 Triangles triangulate(const RawFile& raw, int& dropped) {
   Triangles out;
@@ -193,6 +204,7 @@ std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
 std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
   RawFile raw = read_raw(path, options);
   check_indices(path, raw);
+  check_polygons(path, raw);
   const mesh_io::Reading how = mesh_io::judge(path, raw, options);
   place(raw, how);
   std::vector<Source> sources;

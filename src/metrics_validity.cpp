@@ -281,35 +281,67 @@ void measure_polygons(const Welded& m, const std::vector<EdgeUse>& uses,
   }
 }
 
-std::int64_t count_intersecting(const Welded& m, const std::vector<std::pair<int, int>>& pairs) {
+/// The faces that lie on three points, once, and how many do: all of them meet one another, and
+/// whatever one meets the others meet.
+struct Stacks {
+  std::vector<Face> faces;
+  std::vector<std::int64_t> sizes;
+};
+
+Stacks stack_faces(const Welded& m) {
+  const auto corners = [](Face f) {
+    std::sort(f.begin(), f.end());
+    return f;
+  };
+  std::vector<std::pair<Face, int>> sorted;
+  for (int f = 0; f < static_cast<int>(m.faces.size()); ++f)
+    if (!is_degenerate(m.points, m.faces[f])) sorted.emplace_back(corners(m.faces[f]), f);
+  std::sort(sorted.begin(), sorted.end());
+  Stacks stacks;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i == 0 || sorted[i].first != sorted[i - 1].first) {
+      stacks.faces.push_back(m.faces[sorted[i].second]);
+      stacks.sizes.push_back(0);
+    }
+    ++stacks.sizes.back();
+  }
+  return stacks;
+}
+
+std::int64_t count_intersecting(const Welded& m, const Stacks& stacks,
+                                const std::vector<std::pair<int, int>>& pairs) {
   constexpr std::size_t kGrain = 256;
   const std::size_t blocks = (pairs.size() + kGrain - 1) / kGrain;
   std::vector<std::int64_t> found(blocks, 0);
   parallel_for(blocks, [&](std::size_t b) {
-    for (std::size_t i = b * kGrain; i < std::min(pairs.size(), (b + 1) * kGrain); ++i)
-      found[b] += do_intersect(m.points, m.faces[pairs[i].first], m.faces[pairs[i].second]);
+    for (std::size_t i = b * kGrain; i < std::min(pairs.size(), (b + 1) * kGrain); ++i) {
+      const auto [f, g] = pairs[i];
+      if (do_intersect(m.points, stacks.faces[f], stacks.faces[g]))
+        found[b] += stacks.sizes[f] * stacks.sizes[g];
+    }
   });
   return std::accumulate(found.begin(), found.end(), std::int64_t{0});
 }
 
 std::int64_t count_self_intersections(const Welded& m) {
+  const Stacks stacks = stack_faces(m);
   std::vector<FaceBox> boxes;
-  for (int f = 0; f < static_cast<int>(m.faces.size()); ++f) {
-    if (is_degenerate(m.points, m.faces[f])) continue;
-    Box box;
-    for (int v : m.faces[f]) box.extend(m.points[v]);
-    boxes.emplace_back(to_cgal(box), &m.faces[f]);
-  }
   std::int64_t found = 0;
+  for (std::size_t s = 0; s < stacks.faces.size(); ++s) {
+    Box box;
+    for (int v : stacks.faces[s]) box.extend(m.points[v]);
+    boxes.emplace_back(to_cgal(box), &stacks.faces[s]);
+    found += stacks.sizes[s] * (stacks.sizes[s] - 1) / 2;
+  }
   std::vector<std::pair<int, int>> pairs;
   const auto collect = [&](const FaceBox& a, const FaceBox& b) {
-    pairs.emplace_back(a.handle() - m.faces.data(), b.handle() - m.faces.data());
+    pairs.emplace_back(a.handle() - stacks.faces.data(), b.handle() - stacks.faces.data());
     if (pairs.size() < kPairsAtOnce) return;
-    found += count_intersecting(m, pairs);
+    found += count_intersecting(m, stacks, pairs);
     pairs.clear();
   };
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), collect);
-  return found + count_intersecting(m, pairs);
+  return found + count_intersecting(m, stacks, pairs);
 }
 
 }  // namespace

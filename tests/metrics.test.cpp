@@ -226,6 +226,16 @@ TEST_CASE("overlaps of neighbours count: folded, equal, and through a shared ver
   CHECK(check_validity(m).self_intersections == 0);
   m.faces = {{0, 1, 2}, {1, 2, 0}};
   CHECK(check_validity(m).self_intersections == 1);  // the same face twice
+  for (const std::int64_t n : {3, 50, 20'000}) {     // all pairs, without a look at each
+    const Mesh box = unit_box();
+    m = box;
+    m.faces.insert(m.faces.end(), static_cast<std::size_t>(n - 1), box.faces[0]);
+    CHECK(check_validity(m).self_intersections == n * (n - 1) / 2);
+    m = join(m, unit_box({0.5, 0.4, 0.3}));
+    const std::int64_t of_one =
+        check_validity(join(box, unit_box({0.5, 0.4, 0.3}))).self_intersections;
+    CHECK(check_validity(m).self_intersections >= n * (n - 1) / 2 + of_one);
+  }
   m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.2, -1}, {0.5, 0.2, 1}};
   m.faces = {{0, 1, 2}, {0, 3, 4}};
   CHECK(check_validity(m).self_intersections == 1);  // pierced, with a common vertex
