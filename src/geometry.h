@@ -57,7 +57,8 @@ struct LeftOut {
 /// One building as it was read. Exactly one of `mesh` and `cloud` is non-empty.
 struct Source {
   std::string name;  ///< unique within a scene, safe as a file name
-  std::string path;  ///< the file it came from
+  std::string given_name;  ///< as its file writes it, in UTF-8; else the file's name
+  std::string path;        ///< the file it came from
   Mesh mesh;
   PointCloud cloud;
   std::vector<int> face_object;  ///< per face of `mesh`: the file's object number (OBJ group, PLY

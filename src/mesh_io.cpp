@@ -6,15 +6,14 @@
 #include <cmath>
 #include <filesystem>
 #include <new>
-#include <numeric>
 #include <set>
 #include <tuple>
 
 #include "mesh_io_files.h"
 #include "mesh_io_formats.h"
+#include "mesh_io_split.h"
 #include "parallel.h"
 #include "stopwatch.h"
-#include "union_find.h"
 
 namespace colod {
 
@@ -22,6 +21,7 @@ namespace fs = std::filesystem;
 using mesh_io::is_usable;
 using mesh_io::lower;
 using mesh_io::RawFile;
+using mesh_io::Triangles;
 
 namespace {
 
@@ -79,30 +79,6 @@ void place(RawFile& raw, const mesh_io::Reading& how) {
   }
 }
 
-/// Equal points become one: point → the lowest index with these coordinates.
-std::vector<int> weld(const std::vector<Vec3>& points) {
-  std::vector<int> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) {
-    const Vec3& p = points[i];
-    return std::make_tuple(is_usable(p) ? p.x() : INFINITY, is_usable(p) ? p.y() : INFINITY,
-                           is_usable(p) ? p.z() : INFINITY, i);
-  };
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool is_equal =
-        k > 0 && is_usable(points[order[k]]) && points[order[k]] == points[order[k - 1]];
-    first[order[k]] = is_equal ? first[order[k - 1]] : order[k];
-  }
-  return first;
-}
-
-/// The triangles of a file and the polygon each came from.
-struct Triangles {
-  std::vector<Face> faces;
-  std::vector<int> polygon;
-};
-
 /// Ear clipping takes up to the cube of a polygon's corners: half a second for the most that is
 /// read.
 void check_polygons(const std::string& path, const RawFile& raw) {
@@ -154,50 +130,11 @@ Source take(const RawFile& raw, const Triangles& all, const std::vector<int>& ch
   return s;
 }
 
-/// Connected components over shared (or equal) points: triangle → component, numbered by first
-/// triangle.
-std::vector<int> components(const RawFile& raw, const Triangles& all, int& count) {
-  const std::vector<int> welded = weld(raw.points);
-  UnionFind sets(welded.size());
-  for (const Face& f : all.faces)
-    for (int i = 1; i < 3; ++i) sets.unite(welded[f[0]], welded[f[i]]);
-  std::vector<int> number(raw.points.size(), -1), result;
-  count = 0;
-  for (const Face& f : all.faces) {
-    int& c = number[sets.find(welded[f[0]])];
-    if (c < 0) c = count++;
-    result.push_back(c);
-  }
-  return result;
-}
-
 bool has_area(const Mesh& m) {
   return std::any_of(m.faces.begin(), m.faces.end(),
                      [&](const Face& f) { return face_area(m, f) > 0; });
 }
 
-/// Triangle → building, and the buildings' names after the file's stem ("" for the whole file).
-std::vector<int> split(const RawFile& raw, const Triangles& all, Split how,
-                       std::vector<std::string>& names) {
-  const bool has_parts = !raw.face_part.empty() && raw.parts.size() > 1;
-  std::vector<int> part(all.faces.size(), 0);
-  names = {""};
-  if (how == Split::kComponent) {
-    int count = 0;
-    part = components(raw, all, count);
-    if (count > 1) names.clear();
-    for (int c = 0; c < count && count > 1; ++c) names.push_back(std::to_string(c + 1));
-  } else if (how != Split::kNone && has_parts) {
-    names = raw.parts;
-    const bool has_nameless =
-        std::any_of(raw.face_part.begin(), raw.face_part.end(), [](int p) { return p < 0; });
-    if (has_nameless) names.push_back("rest");
-    for (std::size_t t = 0; t < part.size(); ++t) {
-      const int p = raw.face_part[all.polygon[t]];
-      part[t] = p >= 0 ? p : static_cast<int>(raw.parts.size());
-    }
-  }
-  return part;
 }
 
 /// Everything a file holds, split as asked. Throws when nothing in it is usable.
@@ -208,19 +145,21 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
   const mesh_io::Reading how = mesh_io::judge(path, raw, options);
   place(raw, how);
   std::vector<Source> sources;
-  std::vector<std::string> names = {""};
+  mesh_io::Parting parting{{}, {{"", ""}}, ""};
   if (raw.face_count() == 0) {
     sources.push_back(mesh_io::read_cloud(path, raw));
   } else {
     if (raw.is_soup) {
-      const std::vector<int> first = weld(raw.points);
+      const std::vector<int> first = mesh_io::weld(raw.points);
       for (int& c : raw.corners) c = first[c];
     }
     int dropped = 0;
     const Triangles all = triangulate(raw, dropped);
-    const std::vector<int> part = split(raw, all, options.split, names);
-    std::vector<std::vector<int>> chosen(names.size());
-    for (std::size_t t = 0; t < part.size(); ++t) chosen[part[t]].push_back(static_cast<int>(t));
+    parting = mesh_io::part_buildings(raw, all, options.split);
+    std::vector<std::vector<int>> chosen(parting.parts.size());
+    for (std::size_t t = 0; t < all.faces.size(); ++t)
+      if (const int part = parting.part_of[t]; part >= 0)
+        chosen[part].push_back(static_cast<int>(t));
     for (const std::vector<int>& triangles : chosen) sources.push_back(take(raw, all, triangles));
     if (dropped > 0)
       raw.warnings.push_back(std::to_string(dropped) +
@@ -233,8 +172,12 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
     if (s.is_mesh()) mesh_io::leave_out_strays(s);
     if (s.cloud.points.empty() && !has_area(s.mesh)) continue;
     s.path = path;
-    s.name = sanitize(names[i].empty() ? stem : stem + "_" + names[i]);
+    const mesh_io::Part& part = parting.parts[i];
+    s.name = sanitize(part.name.empty() ? stem : stem + "_" + part.name);
+    s.given_name = part.given.empty() ? stem : part.given;
     s.warnings.insert(s.warnings.begin(), raw.warnings.begin(), raw.warnings.end());
+    if (usable.empty() && !parting.message.empty())  // of the file, said once
+      s.warnings.push_back(fs::path(path).filename().string() + ": " + parting.message);
     usable.push_back(std::move(s));
   }
   if (!usable.empty())

@@ -13,6 +13,7 @@ enum class Split {
   kAuto,
   kNone,
   kObject,
+  kGroup,
   kComponent
 };  ///< how a file with several buildings is taken apart
 
@@ -24,8 +25,8 @@ enum class Up {
 };       ///< the axis of a file that points up
 
 struct ReadOptions {
-  Split split = Split::kAuto;  ///< auto: glTF scene nodes and OBJ `o` objects when there are
-                               ///< several; otherwise one building a file
+  Split split = Split::kAuto;  ///< auto: by overlap, nesting and names of glTF nodes, OBJ objects
+                               ///< and groups, and bodies that stand apart; see docs/options.md
   Up up = Up::kUnsaid;         ///< glTF is always y up and turned by itself
   std::optional<double> unit =
       std::nullopt;            ///< metres per unit of the file, of glTF too; none: metres, with a

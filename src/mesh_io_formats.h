@@ -21,6 +21,9 @@ struct RawFile {
   std::vector<int> face_group;  ///< per polygon: OBJ `g` or PLY `object`; empty: the file has none
   std::vector<int> face_part;   ///< per polygon: index into `parts`; empty: the file has none
   std::vector<std::string> parts;     ///< OBJ `o` objects, glTF nodes: one building each when split
+  std::vector<int> part_parent;       ///< per part: the part that it is a level of detail of, −1:
+                                      ///< none; empty: none of them is
+  std::vector<std::string> groups;    ///< OBJ `g`, by the numbers in face_group; empty: unnamed
   std::vector<std::string> warnings;  ///< what the reader skipped
   bool has_doubtful_normals = false;  ///< perhaps colours: kept where the surface agrees
   std::string remarks;                ///< comments at the file's head: which program wrote it

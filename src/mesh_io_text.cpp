@@ -211,6 +211,7 @@ RawFile read_obj(const std::string& path, const std::string& bytes) {
   if (groups.names.empty()) raw.face_group.clear();
   if (objects.names.empty()) raw.face_part.clear();
   raw.parts = objects.names;
+  raw.groups = groups.names;
   if (short_faces > 0)
     raw.warnings.push_back(std::to_string(short_faces) +
                            " faces with fewer than 3 corners left out, first in line " +

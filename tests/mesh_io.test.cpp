@@ -206,7 +206,8 @@ TEST_CASE("a polygon whose hole is cut in by a bridge keeps its area") {
 
 TEST_CASE("OBJ groups are parts of one building, several objects are buildings") {
   const Mesh b = moved(kHouse, {20, 0, 0});
-  const std::string groups = "g wall\n" + obj_text(kHouse) + "g roof\n" + obj_text(b, 10);
+  const std::string groups =
+      "g wall\n" + obj_text(kHouse) + "g roof\n" + obj_text(moved(kHouse, {0, 0, 9}), 10);
   const Source s = only(read_bytes("a.obj", groups));
   CHECK((s.face_object.front() == 0 && s.face_object.back() == 1));
   const std::string objects = "o left\n" + obj_text(kHouse) + "o right/2\n" + obj_text(b, 10);

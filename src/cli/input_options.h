@@ -36,11 +36,12 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
          [&read](const std::string& v) {
            read.split = v == "none"        ? Split::kNone
                         : v == "object"    ? Split::kObject
+                        : v == "group"     ? Split::kGroup
                         : v == "component" ? Split::kComponent
                                            : Split::kAuto;
          },
-         "how a file is taken apart into buildings: auto (default), none, object, component")
-      ->check(CLI::IsMember({"auto", "none", "object", "component"}));
+         "how a file is taken apart into buildings: auto (default), none, object, group, component")
+      ->check(CLI::IsMember({"auto", "none", "object", "group", "component"}));
 }
 
 /// For subcommands whose INPUT may be a folder.
