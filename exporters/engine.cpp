@@ -88,10 +88,12 @@ std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
     const std::string name = level_name(building, lod);
     const Json primitive = add_primitive(document, flat, grid, Compression::kNone);
     document.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
-    document.json["nodes"].push_back(
-        {{"name", name},
-         {"mesh", 0},
-         {"extras", {{"building", building.name}, {"layer", levels[lod]->layers.back()}}}});
+    document.json["nodes"].push_back({{"name", name},
+                                      {"mesh", 0},
+                                      {"extras",
+                                       {{"building", building.name},
+                                        {"given_name", shown_name(building)},
+                                        {"layer", levels[lod]->layers.back()}}}});
     files.push_back({"engine/" + name + ".glb", finish_glb(std::move(document))});
   }
   return files;
@@ -105,6 +107,7 @@ Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
     const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
     const double diameter = bounding_box(levels[0]->mesh.vertices).diagonal();
     Json entry = {{"name", building.name},
+                  {"given_name", shown_name(building)},
                   {"source", building.source},
                   {"pivot", {world.x(), world.y(), world.z()}},
                   {"bounding_sphere_diameter", diameter},

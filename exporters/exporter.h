@@ -33,9 +33,10 @@ struct ExportLevel {
 
 struct ExportBuilding {
   std::string name;
-  std::string source;               ///< file it came from
+  std::string source;               ///< base name of the file that it came from
   Vec3 origin = Vec3::Zero();       ///< world position of the local origin
   std::vector<ExportLevel> levels;  ///< coarsest first; not empty; layers that failed are absent
+  std::string given_name;           ///< as the input writes it, UTF-8; empty: none but `name`
 };
 
 /// How the levels' gsd came about, for whoever reads the files.

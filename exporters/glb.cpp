@@ -59,11 +59,15 @@ std::vector<Level> plan_levels(const ExportBuilding& building, const GlbOptions&
 
 Json node_of(const ExportBuilding& building, const Level& level, std::size_t lod) {
   Json node;
-  node["name"] = building.name + "_LOD" + std::to_string(lod);
+  node["name"] = shown_name(building) + "_LOD" + std::to_string(lod);
   node["mesh"] = level.mesh;
-  node["extras"] = {{"building", building.name},     {"layer", level.level->layers.back()},
-                    {"layers", level.level->layers}, {"gsd", level.level->gsd},
-                    {"deviation", level.deviation},  {"faces", level.faces}};
+  node["extras"] = {{"building", building.name},
+                    {"given_name", shown_name(building)},
+                    {"layer", level.level->layers.back()},
+                    {"layers", level.level->layers},
+                    {"gsd", level.level->gsd},
+                    {"deviation", level.deviation},
+                    {"faces", level.faces}};
   return node;
 }
 
@@ -85,7 +89,7 @@ BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions
         flatten(level.level->mesh, Vec3::Zero(), level.grid, static_cast<int>(lod));
     level.faces = flat.triangles.size();
     Json mesh;
-    mesh["name"] = building.name + "_LOD" + std::to_string(lod);
+    mesh["name"] = shown_name(building) + "_LOD" + std::to_string(lod);
     const std::size_t before = document.binary.size();
     Json primitive = add_primitive(document, flat, level.grid, options.compression);
     bytes.push_back(document.binary.size() - before);

@@ -44,6 +44,7 @@ Json schema() {
   properties["gsd"] = scalar("FLOAT32");
   properties["deviation"] = scalar("FLOAT32");
   properties["source"] = {{"type", "STRING"}};
+  properties["given_name"] = {{"type", "STRING"}};
   properties["faces"] = scalar("UINT32");
   Json out;
   out["id"] = "colod";
@@ -53,11 +54,15 @@ Json schema() {
 
 }  // namespace
 
+const std::string& shown_name(const ExportBuilding& building) {
+  return building.given_name.empty() ? building.name : building.given_name;
+}
+
 Feature feature_of(const ExportBuilding& building, const ExportLevel& level, double deviation,
                    std::size_t faces) {
   return {building.name, level.layers.back(), level.layers.front(),
           level.gsd,     deviation,           building.source,
-          faces};
+          faces,         shown_name(building)};
 }
 
 Json switching_json(const SwitchFacts& facts) {
@@ -74,10 +79,11 @@ Json switching_json(const SwitchFacts& facts) {
 }
 
 void add_features(GltfDocument& document, const std::vector<Feature>& features) {
-  std::vector<std::string> names, sources;
+  std::vector<std::string> names, given_names, sources;
   std::string layers, coarsest, gsds, deviations, faces;
   for (const Feature& f : features) {
     names.push_back(f.name);
+    given_names.push_back(f.given_name);
     sources.push_back(f.source);
     put(layers, static_cast<std::int16_t>(f.layer));
     put(coarsest, static_cast<std::int16_t>(f.coarsest_layer));
@@ -92,6 +98,7 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
   table["properties"]["gsd"]["values"] = add_buffer_view(document, gsds);
   table["properties"]["deviation"]["values"] = add_buffer_view(document, deviations);
   table["properties"]["source"] = string_column(document, sources);
+  table["properties"]["given_name"] = string_column(document, given_names);
   table["properties"]["faces"]["values"] = add_buffer_view(document, faces);
   document.json["extensions"]["EXT_structural_metadata"] = {
       {"schema", schema()}, {"propertyTables", Json::array({table})}};

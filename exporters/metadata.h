@@ -14,7 +14,11 @@ struct Feature {
   double deviation = 0;     ///< metres from the finest layer, rounding included
   std::string source;       ///< file; empty where several differ
   std::size_t faces = 0;    ///< triangles as written
+  std::string given_name;   ///< as the input writes the name
 };
+
+/// The name for readers: as the input writes it, where it writes one.
+const std::string& shown_name(const ExportBuilding& building);
 
 constexpr int kMostFeatures = 1 << 24;  ///< ids beyond are no exact floats
 

@@ -75,10 +75,15 @@ Feature feature_of(const Scene& scene, const TilePart& part, double rounding, st
   f.gsd = part.gsd;
   f.deviation = part.deviation + rounding;
   f.faces = faces;
-  for (std::size_t i = 0; i < std::min(kMostNames, part.buildings.size()); ++i)
-    f.name += (i ? ", " : "") + scene.buildings[part.buildings[i]].name;
-  if (part.buildings.size() > kMostNames)
-    f.name += " and " + std::to_string(part.buildings.size() - kMostNames) + " more";
+  for (std::size_t i = 0; i < std::min(kMostNames, part.buildings.size()); ++i) {
+    const ExportBuilding& b = scene.buildings[part.buildings[i]];
+    f.name += (i ? ", " : "") + b.name;
+    f.given_name += (i ? ", " : "") + shown_name(b);
+  }
+  if (part.buildings.size() > kMostNames) {
+    const std::string more = " and " + std::to_string(part.buildings.size() - kMostNames) + " more";
+    f.name += more, f.given_name += more;
+  }
   f.source = scene.buildings[part.buildings[0]].source;
   for (const int b : part.buildings)
     if (scene.buildings[b].source != f.source) f.source.clear();
@@ -115,10 +120,13 @@ double rounding_bound(const PlannedTile& tile, const TilesOptions& options) {
 }
 
 /// Whom and which layers a tile of one part shows.
-Json identity_json(const std::string& name, const TilePart& part) {
+Json identity_json(const std::string& name, const std::string& given_name, const TilePart& part) {
   const int finest = part.level ? part.level->layers.back() : -1;
   const int coarsest = part.level ? part.level->layers.front() : -1;
-  return {{"building", name}, {"layer", finest}, {"coarsestLayer", coarsest}};
+  return {{"building", name},
+          {"given_name", given_name},
+          {"layer", finest},
+          {"coarsestLayer", coarsest}};
 }
 
 /// One GLB with the tile's parts merged.
@@ -142,7 +150,8 @@ void encode_content(const Scene& scene, Content& content) {
   Json primitive = add_primitive(document, merged, grid, scene.options.compression, &seen);
   primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());
   Json node = {{"name", tile.name}, {"mesh", 0}};
-  if (features.size() == 1) node["extras"] = identity_json(features[0].name, tile.parts[0]);
+  if (features.size() == 1)
+    node["extras"] = identity_json(features[0].name, features[0].given_name, tile.parts[0]);
   document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
   document.json["nodes"].push_back(node);
   add_features(document, features);
@@ -259,9 +268,10 @@ Tile assemble(Scene& scene, std::size_t& next) {
   tile.json["boundingVolume"] = box_json(tile.box);
   tile.json["geometricError"] = tile.error;
   tile.json["content"]["uri"] = percent_encoded(content.file.path.substr(content.folder.size()));
-  if (planned.parts.size() == 1 && planned.parts[0].level)
-    tile.json["extras"] =
-        identity_json(scene.buildings[planned.parts[0].buildings[0]].name, planned.parts[0]);
+  if (planned.parts.size() == 1 && planned.parts[0].level) {
+    const ExportBuilding& b = scene.buildings[planned.parts[0].buildings[0]];
+    tile.json["extras"] = identity_json(b.name, shown_name(b), planned.parts[0]);
+  }
   if (!children.empty()) tile.json["children"] = std::move(children);
   if (planned.is_cell && self > 0) return wrap_cell(scene, content, std::move(tile));
   return tile;

@@ -233,7 +233,9 @@ Building segment_building(Turn turn, const Options& options) {
   } catch (const std::exception& e) {  // a library gave up: this building's problem only
     b.failure = source.name + ": " + e.what();
   }
-  if (b.source.name.empty()) b.source.name = source.name, b.source.path = source.path;
+  if (b.source.name.empty())
+    b.source.name = source.name, b.source.given_name = source.given_name,
+    b.source.path = source.path;
   b.counts = count(b);
   append(b.warnings, b.source.warnings);
   append(b.warnings, b.planes.warnings);

@@ -3,11 +3,16 @@
 // Notation: none.
 #include "publish.h"
 
+#include <filesystem>
+
 namespace colod {
 
 ExportBuilding export_building(const Building& b) {
-  ExportBuilding result{
-      .name = b.source.name, .source = b.source.path, .origin = b.frame.origin, .levels = {}};
+  ExportBuilding result{.name = b.source.name,
+                        .source = std::filesystem::path(b.source.path).filename().string(),
+                        .origin = b.frame.origin,
+                        .levels = {},
+                        .given_name = b.source.given_name};
   bool is_like_last = false;
   for (const Layer& layer : b.layers) {
     if (!layer.failure.empty()) continue;

@@ -59,6 +59,7 @@ Json layer_json(const Layer& layer) {
 
 Json building_json(const Building& b, bool has_prior) {
   Json json{{"name", b.source.name},
+            {"given_name", b.source.given_name},
             {"source", b.source.path},
             {"vertices", b.counts.vertices},
             {"faces", b.counts.faces},

@@ -16,14 +16,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 5;  // PRAGMA user_version
+constexpr int kFormat = 6;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT NOT NULL, path TEXT NOT NULL,
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
-  rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL);
+  rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL,
+  given_name TEXT NOT NULL);
 CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,

@@ -117,7 +117,7 @@ LayerSight read_sight(Statement& s) {
 void Store::Impl::put_building(const Building& b, int order, const std::string& key) const {
   const std::vector<Vec3> box{b.planes.box.min, b.planes.box.max};
   std::vector<std::string> own_warnings = b.warnings;
-  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(order)
       .bind(key)
@@ -138,6 +138,7 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(b.failure)
       .bind(Json(own_warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
       .bind(Json(b.left_out).dump())
+      .bind(b.source.given_name)
       .run();
 }
 
@@ -218,7 +219,8 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
 void Store::Impl::get_building(Building& b) const {
   Statement s = read(
       "SELECT path, origin_x, origin_y, origin_z, yaw, planes_distance, total_area, box, vertices, "
-      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out FROM building "
+      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out, given_name "
+      "FROM building "
       "WHERE name = "
       "?1");
   if (!s.bind(b.source.name).step())
@@ -240,6 +242,7 @@ void Store::Impl::get_building(Building& b) const {
   b.failure = s.text();
   read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
   read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
+  b.source.given_name = s.text();
   check_place(b.source.mesh.vertices, path);
   check_place(b.source.cloud.points, path);
   check_range(b.source.mesh.faces, b.source.mesh.vertices.size(), path);
