@@ -47,7 +47,3 @@ if(COLOD_SANITIZE)
   add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${sanitizers})
 endif()
-
-# Debian's TinyGLTF target; the implementation is compiled where it is used.
-add_library(tinygltf_headers INTERFACE)
-target_link_libraries(tinygltf_headers INTERFACE TinyGLTF::TinyGLTF)

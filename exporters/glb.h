@@ -16,10 +16,10 @@ struct BuildingGlb : Encoded {
   std::vector<std::size_t> level_bytes;  ///< coarsest first
 };
 
-/// path: buildings/<name>.glb. Finest layer on the root node, named <name>_LOD0; coarser ones in
-/// MSFT_lod.ids by falling detail; coarsest first in the binary chunk, the property table of the
-/// levels after them. Coverages are c = D / (g·H), with g of the next coarser level, D the bounding
-/// sphere's diameter and H the viewport's height.
+/// path: buildings/<name>.glb. Finest layer on the root node, named after the given name, _LOD0;
+/// coarser in MSFT_lod.ids by falling detail; coarsest first in the binary chunk, the property
+/// table of the levels after them. Coverages are c = D / (g·H), with g of the next coarser level, D
+/// the bounding sphere's diameter and H the viewport's height.
 BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions& options = {});
 
 }  // namespace colod

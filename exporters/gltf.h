@@ -1,8 +1,8 @@
 // Shared by glb.cpp and tiles3d.cpp: a glTF document and its binary chunk as they grow.
 //
-// nlohmann-json and this container instead of tinygltf: Draco primitives and property tables are
-// mostly extension objects, which tinygltf takes as trees of its own Value, and it decides itself
-// about the order of buffers, which matters here (coarsest level first).
+// nlohmann-json and this container instead of a glTF library: Draco primitives and property tables
+// are mostly extension objects, which libraries take as trees of their own, and they decide
+// themselves about the order of buffers, which matters here (coarsest level first).
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -8,8 +8,21 @@ namespace colod {
 
 namespace {
 
-const unsigned char* data_of(const std::string& s) {
+const unsigned char* data_of(std::string_view s) {
   return reinterpret_cast<const unsigned char*>(s.data());
+}
+
+/// Undoes a filter in place; false: there is no such one, or none of that stride.
+bool undo_filter(std::string& bytes, std::size_t count, std::size_t stride,
+                 const std::string& filter) {
+  if (filter == "NONE") return true;
+  if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8))
+    return meshopt_decodeFilterOct(bytes.data(), count, stride), true;
+  if (filter == "QUATERNION" && stride == 8)
+    return meshopt_decodeFilterQuat(bytes.data(), count, stride), true;
+  if (filter == "EXPONENTIAL" && stride % 4 == 0)
+    return meshopt_decodeFilterExp(bytes.data(), count, stride), true;
+  return false;
 }
 
 }  // namespace
@@ -56,6 +69,24 @@ std::string decode_meshopt_vertices(const std::string& payload, std::size_t coun
   std::string out(count * stride, '\0');
   if (meshopt_decodeVertexBuffer(out.data(), count, stride, data_of(payload), payload.size()) != 0)
     out.clear();
+  return out;
+}
+
+std::string decode_meshopt(std::string_view payload, std::size_t count, std::size_t stride,
+                           const std::string& mode, const std::string& filter) {
+  std::string out(count * stride, '\0');
+  const bool is_index = stride == 2 || stride == 4;
+  int problem = 1;
+  if (mode == "ATTRIBUTES" && stride > 0 && stride <= 256 && stride % 4 == 0)
+    problem =
+        meshopt_decodeVertexBuffer(out.data(), count, stride, data_of(payload), payload.size());
+  else if (mode == "TRIANGLES" && is_index && count % 3 == 0)
+    problem =
+        meshopt_decodeIndexBuffer(out.data(), count, stride, data_of(payload), payload.size());
+  else if (mode == "INDICES" && is_index)
+    problem =
+        meshopt_decodeIndexSequence(out.data(), count, stride, data_of(payload), payload.size());
+  if (problem != 0 || !undo_filter(out, count, stride, filter)) out.clear();
   return out;
 }
 

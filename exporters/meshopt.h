@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace colod {
@@ -22,5 +23,11 @@ std::string encode_meshopt_vertices(const std::string& bytes, std::size_t stride
 std::vector<std::uint32_t> decode_meshopt_indices(const std::string& payload, std::size_t count);
 std::string decode_meshopt_vertices(const std::string& payload, std::size_t count,
                                     std::size_t stride);
+
+/// A whole buffer view of the extension as any writer may pack it: `mode` ATTRIBUTES, TRIANGLES or
+/// INDICES, `filter` NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL. count × stride bytes; empty when
+/// the payload is damaged or mode, filter, count and stride do not go together.
+std::string decode_meshopt(std::string_view payload, std::size_t count, std::size_t stride,
+                           const std::string& mode, const std::string& filter);
 
 }  // namespace colod

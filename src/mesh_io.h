@@ -77,7 +77,7 @@ std::vector<Source> read_file(const InputFile& file, const ReadOptions& options 
 
 /// Reads every INPUT: a file, or a folder (each supported file in it, sorted by name; subfolders
 /// with is_recursive). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB
-/// (Draco too), points as XYZ, PWN, PTS, ASC, CSV, TXT. Validates: coordinates finite (faces that
+/// (Draco and meshopt too), points as XYZ, PWN, PTS, ASC, CSV, TXT. Validates: coordinates finite (faces that
 /// use bad ones are dropped with a warning; points too), indices in range (otherwise a failure), at
 /// least one face of positive area or 3 points; polygons are fan-triangulated (concave ones by
 /// ear/CDT). Small pieces absurdly far from the rest are left out. Clouds without normals get

@@ -17,6 +17,7 @@ namespace colod::mesh_io {
 
 namespace {
 
+constexpr std::size_t kMostCells = 20'000'000;  // 5 km² of plan; what comes later stands by itself
 constexpr double kSlope = 0.3;  // of the distance that feet of bodies that stand apart may differ
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -174,8 +175,12 @@ class Splitter {
 
 std::vector<Body> Splitter::describe(const std::vector<std::vector<int>>& lists) const {
   std::vector<Body> bodies;
-  for (const std::vector<int>& list : lists)
+  std::size_t cells = 0;
+  for (const std::vector<int>& list : lists) {
     bodies.push_back(describe_body(raw_.points, welded_, all_.faces, list));
+    cells += bodies.back().cells.size();
+    if (cells > kMostCells) bodies.back().cells.clear(), bodies.back().is_wide = true;
+  }
   return bodies;
 }
 

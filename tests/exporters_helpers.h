@@ -62,7 +62,8 @@ inline ExportBuilding three_layers(const std::string& name, const Vec3& origin) 
           origin,
           {{{0}, as_polygons(box_mesh({0, 0, 0}, {12.3, 8.1, 7.1})), 0.6, 3.3},
            {{1}, as_polygons(gable), 0.3, 2.25},
-           {{2}, as_polygons(join(gable, chimney)), 0, 0}}};
+           {{2}, as_polygons(join(gable, chimney)), 0, 0}},
+          ""};
 }
 
 struct Glb {

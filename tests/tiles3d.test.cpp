@@ -113,7 +113,7 @@ TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
   for (const double angle : {0.0, 0.4, 1.2}) {
     Mesh mesh = box_mesh({-6, -4, 0}, {6, 4, 7});
     for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * p;
-    const ExportBuilding b{"box", "", {100, 200, 3}, {{{0}, as_polygons(mesh), 0, 0}}};
+    const ExportBuilding b{"box", "", {100, 200, 3}, {{{0}, as_polygons(mesh), 0, 0}}, ""};
     const StandIn box = stand_in_for(b, 5);
     CHECK(box.buildings == std::vector<int>{5});
     CHECK(box.error == Approx(0).margin(1e-5));
