@@ -146,7 +146,7 @@ Folder look_through(const std::string& path, bool is_recursive) {
   return folder;
 }
 
-/// "; 12 files that can be read lie in subfolders: --recursive reads them, too", or nothing.
+/// "12 files that can be read lie in subfolders: --recursive reads them, too", or nothing.
 std::string said_of_deeper(const Folder& folder) {
   if (folder.deeper == 0) return "";
   return std::string(folder.has_more ? "at least " : "") + std::to_string(folder.deeper) +

@@ -91,9 +91,11 @@ std::string size_text(const Vec3& size) {
   return number(size.x()) + " x " + number(size.y()) + " x " + number(size.z());
 }
 
-/// A program that writes y up unless told otherwise, by the comments at the head of a file.
-std::string y_up_writer(const RawFile& raw) {
+/// A program that writes OBJ y up unless told otherwise, by the comments at the head of a file. The
+/// same programs write PLY and STL z up.
+std::string y_up_writer(const std::string& path, const RawFile& raw) {
   const std::string remarks = lower(raw.remarks);
+  if (lower(std::filesystem::path(path).extension().string()) != ".obj") return "";
   if (remarks.find("blender") != remarks.npos) return "Blender";
   if (remarks.find("sketchup") != remarks.npos) return "SketchUp";
   return "";
@@ -115,11 +117,12 @@ int slopes_say_y(const Facts& facts) {
 }
 
 /// Returns the axis that seems to be up, 1 or 2.
-int judge_axis(const RawFile& raw, const Facts& facts, const ReadOptions& options, Reading& how) {
+int judge_axis(const std::string& path, const RawFile& raw, const Facts& facts,
+               const ReadOptions& options, Reading& how) {
   how.is_y_up = options.up == Up::kY && !raw.is_turned;
   if (raw.is_turned || options.up == Up::kY || options.up == Up::kZ) return how.is_y_up ? 1 : 2;
   const int slopes = slopes_say_y(facts);
-  const std::string writer = y_up_writer(raw);
+  const std::string writer = y_up_writer(path, raw);
   if (slopes < 0 || (slopes == 0 && writer.empty())) return 2;
   const std::string why =
       slopes > 0 ? "read z up, a large part of its faces hangs over; read y up, next to none does"
@@ -228,7 +231,7 @@ Reading judge(const std::string& path, const RawFile& raw, const ReadOptions& op
   const Facts facts = gather(raw);
   const std::string system = system_beside(path);
   judge_degrees(path, facts, options, system, how);
-  const int up = judge_axis(raw, facts, options, how);
+  const int up = judge_axis(path, raw, facts, options, how);
   judge_unit(raw, facts, options, up, system, how);
   return how;
 }

@@ -52,6 +52,12 @@ Vec3 to_y_up(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
 /// A box without a slope.
 Mesh block(double w, double d, double h) { return box_mesh({0, 0, 0}, {w, d, h}); }
 
+/// A block as PLY with more lines in its header.
+std::string ply_with_head(const std::string& lines) {
+  std::string text = ply_bytes<double>(block(12, 6, 8), false);
+  return text.insert(text.find("element"), lines);
+}
+
 Mesh turned(const Mesh& m, double angle) {
   return mapped(m, [angle](const Vec3& p) {
     return Vec3(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
@@ -253,6 +259,7 @@ TEST_CASE("a program that writes y up is believed unless the slopes tell otherwi
     CHECK_THAT(warnings_of("a.obj", head + obj_text(block(12, 6, 8))), Contains("--up y"));
     CHECK(warnings_of("a.obj", head + obj_text(kHouse)) == "");
   }
+  CHECK(warnings_of("a.ply", ply_with_head("comment Created in Blender 4.2\n")) == "");  // z up
   CHECK(warnings_of("a.obj", "# Rhino\n" + obj_text(block(12, 8, 6))) == "");
 }
 

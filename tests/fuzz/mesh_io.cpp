@@ -13,7 +13,8 @@
 
 namespace {
 
-constexpr std::array kSuffixes{".obj", ".ply", ".off", ".stl", ".gltf", ".glb", ".xyz", ".pwn", ".csv"};
+constexpr std::array kSuffixes{".obj", ".ply", ".off", ".stl", ".gltf",
+                               ".glb", ".xyz", ".pwn", ".csv"};
 
 void check(const colod::Source& source) {
   const auto count = static_cast<int>(source.mesh.vertices.size());
