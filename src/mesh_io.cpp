@@ -135,8 +135,6 @@ bool has_area(const Mesh& m) {
                      [&](const Face& f) { return face_area(m, f) > 0; });
 }
 
-}
-
 /// Everything a file holds, split as asked. Throws when nothing in it is usable.
 std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
   RawFile raw = read_raw(path, options);

@@ -299,3 +299,79 @@ TEST_CASE("place, winding and repetition of faces do not matter") {
   CHECK(json["watertight"] == true);
   CHECK(json["volume"].get<double>() == Approx(12 * 9 * 8).epsilon(0.01));
 }
+
+TEST_CASE(
+    "no option takes what is no number, or more than its range, and says so before the work") {
+  Folder f;
+  const std::string in = f.write("a.off", off(test::gable_house(12, 9, 6, 4)));
+  const std::string build = "build " + in + " -o " + (f / "out").string() + kSmall;
+  for (const std::string option :
+       {"ns", "nr", "layers", "alcove-area", "beta", "lambda", "eta", "gap", "distance", "angle",
+        "min-points", "seed", "quantization", "target-sse", "visual-error", "pixel-error",
+        "switch-share", "threads"})
+    for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "x", "''"}) {
+      INFO(option << " " << value);
+      const Result result = f.colod(build + "--" + option + "=" + value);
+      CHECK(result.exit_code == 2);
+      CHECK_THAT(result.err, Catch::Contains("--" + option));
+      CHECK_FALSE(fs::exists(f / "out"));
+    }
+  for (const char* value : {"nan,1", "48,11,1e300", "1,inf", "48", "a,b"})
+    CHECK(f.colod(build + "--origin=" + value).exit_code == 2);
+}
+
+TEST_CASE("an option that takes more than the machine has is refused with the most that fits") {
+  Folder f;
+  for (int i = 0; i < 64; ++i)
+    f.write("in/" + std::to_string(i) + ".off", off(test::gable_house(12, 9, 6, 4)));
+  const Result result = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() +
+                                " --ns 1000 --threads 4096");
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Catch::Contains("--ns: 1000 takes about 14.9 GiB a building") &&
+                             Catch::Contains("at most"));
+}
+
+TEST_CASE("an answer that does not arrive, and a file that may not grow, are errors") {
+  Folder f;
+  const std::string in = f.write("a.off", off(test::gable_house(12, 9, 6, 4)));
+  REQUIRE(f.colod("build " + in + " -o " + (f / "out").string() + kSmall).exit_code == 0);
+  for (const std::string& command :
+       {"info " + in, "info --check " + (f / "out").string(), "eval " + in + " " + in}) {
+    const std::string full =
+        std::string(COLOD_BINARY) + " " + command + " >/dev/full 2>" + (f / "said").string();
+    CHECK(WEXITSTATUS(std::system(full.c_str())) == 5);
+    CHECK_THAT(slurp(f / "said"), Catch::Contains("stdout"));
+  }
+  for (const std::string blocks : {"1", "4"}) {
+    const std::string out = (f / ("limited" + blocks)).string();
+    const std::string limited = "ulimit -f " + blocks + "; " + COLOD_BINARY + " build " + in +
+                                " -o " + out + kSmall + " 2>" + (f / "said").string();
+    CHECK(WEXITSTATUS(std::system(limited.c_str())) == 5);
+    CHECK_THAT(slurp(f / "said"), Catch::Contains("File too large"));
+    for (const auto& entry : fs::recursive_directory_iterator(out))
+      CHECK(entry.path().string().find(".tmp") == std::string::npos);
+  }
+}
+
+TEST_CASE("in what order a scene file grew shows in no tile") {
+  Folder f;
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Mesh house = test::gable_house(12 + static_cast<double>(i), 9, 6, 4);
+    for (Vec3& v : house.vertices) v.x() += 30 * static_cast<double>(i);
+    f.write("in/" + names[i] + ".off", off(house));
+  }
+  const std::string scene = (f / "s.colod").string(), grown = (f / "g.colod").string();
+  REQUIRE(f.colod("segment " + (f / "in").string() + " -o " + scene + kSmall).exit_code == 0);
+  for (const char* name : {"d", "a", "e", "c", "b"})
+    REQUIRE(f.colod("segment " + (f / "in").string() + "/" + name + ".off -o " + grown + kSmall)
+                .exit_code == 0);
+  for (const std::string& file : {scene, grown}) {
+    REQUIRE(f.colod("analyze " + file).exit_code == 0);
+    REQUIRE(f.colod("mesh " + file).exit_code == 0);
+    REQUIRE(
+        f.colod("export " + file + " -o " + file + ".out --format glb,3dtiles,3tz,engine --quiet")
+            .exit_code == 0);
+  }
+  CHECK(is_same(scene + ".out", grown + ".out"));
+}

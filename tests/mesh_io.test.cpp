@@ -197,6 +197,24 @@ TEST_CASE("concave polygons keep their area and winding") {
   }
 }
 
+TEST_CASE("a polygon of more corners than are read is refused in one line, of fewer it is read") {
+  const auto comb = [](int corners) {
+    std::string text, face = "f";
+    for (int i = 0; i < corners; ++i) {
+      text += "v " + std::to_string(i) + " " + std::to_string(i % 2 * 100) + " 0\n";
+      face += " " + std::to_string(i + 1);
+    }
+    return text + face + "\n";
+  };
+  CHECK(only(read_bytes("a.obj", comb(1000))).mesh.faces.size() == 998);
+  for (const int corners : {5001, 20'000, 200'000}) {
+    const ReadResult result = read_bytes("a.obj", comb(corners));
+    REQUIRE(result.failures.size() == 1);
+    CHECK_THAT(result.failures[0].message,
+               Contains(std::to_string(corners) + " corners") && Contains("triangulate"));
+  }
+}
+
 TEST_CASE("a polygon whose hole is cut in by a bridge keeps its area") {
   const Source s = only(read_bytes("a.obj",
                                    "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\n"
