@@ -231,8 +231,9 @@ void Store::Impl::get_building(Building& b) const {
   b.frame.yaw = s.real();
   b.planes.distance = s.real();
   b.planes.total_area = s.real();
-  const auto box = s.array<Vec3>();
-  if (box.size() == 2) b.planes.box = {box[0], box[1]};
+  if (const auto box = s.array<double>(); box.size() == 6)  // infinite where there is no plane
+    b.planes.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+  if (b.planes.box.is_empty()) b.planes.box = {};
   b.source.mesh.vertices = s.array<Vec3>();
   b.source.mesh.faces = s.array<Face>();
   b.source.cloud.points = s.array<Vec3>();
@@ -245,6 +246,7 @@ void Store::Impl::get_building(Building& b) const {
   b.source.given_name = s.text();
   check_place(b.source.mesh.vertices, path);
   check_place(b.source.cloud.points, path);
+  if (!b.planes.box.is_empty()) check_place({&b.planes.box.max, 1}, path);
   check_range(b.source.mesh.faces, b.source.mesh.vertices.size(), path);
   if (!b.source.cloud.normals.empty() &&
       b.source.cloud.normals.size() != b.source.cloud.points.size())

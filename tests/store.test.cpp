@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "../src/error.h"
@@ -122,6 +123,46 @@ TEST_CASE("a scene file of an older format is refused with what to do") {
   sqlite3_close(db);
   CHECK_THROWS_WITH(Store(file.path, false),
                     Catch::Contains("format 4") && Catch::Contains("colod segment"));
+}
+
+TEST_CASE("numbers that are none, and tables that are none of ours, are refused") {
+  TemporaryFile file;
+  {
+    Scene scene = build_scene({{house("a", 12)}, {}}, small_options());
+    Store store(file.path, true);
+    store.put_segments(scene.buildings[0], 0, "key");
+    store.put_layers_of_segments(scene.buildings[0]);
+    store.put_meshes(scene.buildings[0]);
+  }
+  const std::string good = file.path + ".good";
+  std::filesystem::copy_file(file.path, good);
+  const auto after = [&](const std::string& sql) {
+    std::filesystem::copy_file(good, file.path, std::filesystem::copy_options::overwrite_existing);
+    sqlite3* db = nullptr;
+    REQUIRE(sqlite3_open(file.path.c_str(), &db) == SQLITE_OK);
+    INFO(sql);
+    REQUIRE(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
+    sqlite3_close(db);
+    CHECK_THROWS_WITH(Store(file.path, false).building("a"), Catch::Contains("damaged"));
+  };
+  for (const char* number : {"9e999", "-9e999", "1e308", "-1e300"})
+    for (const char* column :
+         {"building SET origin_x", "building SET origin_z", "building SET yaw",
+          "building SET total_area", "plane SET normal_x", "plane SET plane_offset",
+          "segment SET volume", "segment SET extent", "layer SET deviation"})
+      after(std::string("UPDATE ") + column + " = " + number);
+  const std::string nan = "X'000000000000F87F'", huge = "X'000000000000F07F'";
+  for (const std::string& number : {nan, huge})
+    for (const char* column : {"building SET vertices", "layer SET vertices",
+                               "plane SET outline_vertices", "segment SET eigenvalues"})
+      after(std::string("UPDATE ") + column + " = CAST(" + number + " || substr(" +
+            std::string(column).substr(std::string(column).rfind(' ') + 1) + ", 9) AS BLOB)");
+  after("CREATE VIEW v AS SELECT 1");
+  after("CREATE TRIGGER t AFTER DELETE ON layer BEGIN DELETE FROM plane; END");
+  after("ALTER TABLE plane ADD COLUMN more AS (1)");
+  after(
+      "DROP TABLE layer; CREATE VIEW layer AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT "
+      "x + 1 FROM c) SELECT * FROM c");
 }
 
 TEST_CASE("a scene file tells what its buildings bring to the switches") {
