@@ -151,3 +151,12 @@ TEST_CASE("files stay short and are formatted as promised") {
     if (file.extension() == ".h") CHECK(text.find("#pragma once") != std::string::npos);
   }
 }
+
+TEST_CASE("locked npm packages are told by their hashes, wherever they are fetched from") {
+  for (const char* file : {"src/cli/viewer/package-lock.json", "tests/clients/package-lock.json"}) {
+    INFO(file);
+    const std::string text = slurp(kRoot / file);
+    CHECK(text.find("\"integrity\"") != std::string::npos);
+    CHECK(text.find("\"resolved\"") == std::string::npos);
+  }
+}
