@@ -123,10 +123,9 @@ double rounding_bound(const PlannedTile& tile, const TilesOptions& options) {
 Json identity_json(const std::string& name, const std::string& given_name, const TilePart& part) {
   const int finest = part.level ? part.level->layers.back() : -1;
   const int coarsest = part.level ? part.level->layers.front() : -1;
-  return {{"building", name},
-          {"given_name", given_name},
-          {"layer", finest},
-          {"coarsestLayer", coarsest}};
+  Json json = {{"building", name}, {"layer", finest}, {"coarsestLayer", coarsest}};
+  if (given_name != name) json["given_name"] = given_name;
+  return json;
 }
 
 /// One GLB with the tile's parts merged.

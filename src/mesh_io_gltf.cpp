@@ -4,6 +4,7 @@
 #include "mesh_io_gltf.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh_io_formats.h"
 #include "mesh_io_split.h"
@@ -89,7 +90,7 @@ std::vector<int> SceneReader::links(const Json& object, const char* key) const {
   std::vector<int> out;
   for (const double d : numbers(object, key)) {
     if (!(d >= 0) || d >= static_cast<double>(is_visited_.size()))
-      gltf_.fail("node " + std::to_string(d).substr(0, 12) + " of " +
+      gltf_.fail("node " + Json(std::floor(d)).dump() + " of " +
                  std::to_string(is_visited_.size()) + " is named but missing");
     out.push_back(static_cast<int>(d));
   }

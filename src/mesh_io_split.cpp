@@ -352,9 +352,8 @@ void Splitter::part_bodies(Parting& parting) {
   for (std::size_t p = 0; p < lists.size(); ++p)
     parted += detach(lists[p], parting, static_cast<int>(p));
   if (parted > 0)
-    say(std::to_string(parted) + (parted > 1 ? " bodies that stand" : " body that stands") +
-        " apart and look" + (parted > 1 ? "" : "s") + " like a building made " +
-        (parted > 1 ? "buildings of their own" : "one of its own") + " (--split none: all one)");
+    say("bodies that look like buildings stand apart, " + std::to_string(parted) +
+        " parted from the largest (--split none: all one)");
 }
 
 Parting Splitter::split() {

@@ -424,6 +424,18 @@ TEST_CASE("a building without triangles is refused by name") {
   CHECK_THROWS_AS(encode_tileset({}), Error);
 }
 
+TEST_CASE("the name that the input writes stands beside the safe one") {
+  ExportBuilding b = three_layers("street_1", Vec3::Zero());
+  b.given_name = "教学楼";
+  const Glb glb = parse_glb(encode_building_glb(b).bytes);
+  CHECK(glb.json["nodes"][0]["name"] == "教学楼_LOD0");
+  CHECK(glb.json["nodes"][0]["extras"]["building"] == "street_1");
+  CHECK(glb.json["nodes"][0]["extras"]["given_name"] == "教学楼");
+  CHECK(glb.binary.find("教学楼教学楼教学楼") != std::string::npos);  // the table's column
+  CHECK(nlohmann::json::parse(encode_lods_json({b}).bytes)["buildings"][0]["given_name"] ==
+        "教学楼");
+}
+
 TEST_CASE("files appear whole, below their folder, or not at all") {
   const fs::path folder = fs::temp_directory_path() / ("colod_files_" + std::to_string(getpid()));
   write_file(folder.string(), {"a/b.txt", "first"});
