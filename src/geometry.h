@@ -56,7 +56,7 @@ struct LeftOut {
 
 /// One building as it was read. Exactly one of `mesh` and `cloud` is non-empty.
 struct Source {
-  std::string name;  ///< unique within a scene, safe as a file name
+  std::string name;        ///< unique within a scene, safe as a file name
   std::string given_name;  ///< as its file writes it, in UTF-8; else the file's name
   std::string path;        ///< the file it came from
   Mesh mesh;
