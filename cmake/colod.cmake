@@ -51,3 +51,10 @@ if(COLOD_SANITIZE)
   add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${sanitizers})
 endif()
+
+# tinygltf as a header that src/mesh_io_gltf_tinygltf.cpp compiles: Debian's libdraco exports the
+# functions of another version of it, and which library a program takes them from would hang on the
+# order of its link line. Without images, so that stb is not needed.
+add_library(tinygltf_headers INTERFACE)
+target_include_directories(tinygltf_headers SYSTEM INTERFACE $<TARGET_PROPERTY:TinyGLTF::TinyGLTF,INTERFACE_INCLUDE_DIRECTORIES>)
+target_compile_definitions(tinygltf_headers INTERFACE TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE TINYGLTF_NO_EXTERNAL_IMAGE)

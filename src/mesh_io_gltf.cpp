@@ -4,7 +4,7 @@
 #include "mesh_io_gltf.h"
 
 #include <algorithm>
-#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "mesh_io_formats.h"
 #include "mesh_io_split.h"
@@ -14,11 +14,8 @@ namespace colod::mesh_io {
 namespace {
 
 using Matrix = Eigen::Matrix4d;
+using tinygltf::Value;
 constexpr double kEarth = 6e6;  // metres from its centre: no local coordinates are as large
-
-std::vector<double> numbers(const Json& object, const char* key) {
-  return object.contains(key) ? object[key].get<std::vector<double>>() : std::vector<double>();
-}
 
 Matrix placement(const double* translation, const double* rotation, const double* scale) {
   Eigen::Affine3d t = Eigen::Affine3d::Identity();
@@ -29,24 +26,17 @@ Matrix placement(const double* translation, const double* rotation, const double
   return t.matrix();
 }
 
-Matrix local_matrix(const Json& node) {
-  const std::vector<double> matrix = numbers(node, "matrix"), t = numbers(node, "translation"),
-                            r = numbers(node, "rotation"), s = numbers(node, "scale");
-  if (matrix.size() == 16) return Eigen::Map<const Matrix>(matrix.data());
+Matrix local_matrix(const tinygltf::Node& node) {
+  const std::vector<double>&t = node.translation, &r = node.rotation, &s = node.scale;
+  if (node.matrix.size() == 16) return Eigen::Map<const Matrix>(node.matrix.data());
   return placement(t.size() == 3 ? t.data() : nullptr, r.size() == 4 ? r.data() : nullptr,
                    s.size() == 3 ? s.data() : nullptr);
 }
 
-const Json* extension_of(const Json& node, const char* name) {
-  const auto list = node.find("extensions");
-  if (list == node.end() || !list->is_object()) return nullptr;
-  const auto found = list->find(name);
-  return found == list->end() || !found->is_object() ? nullptr : &*found;
-}
-
-bool is_hidden(const Json& node) {
-  const Json* visibility = extension_of(node, "KHR_node_visibility");
-  return visibility && !visibility->value("visible", true);
+bool is_hidden(const tinygltf::Node& node) {
+  const Value* visibility = extension_of(node.extensions, "KHR_node_visibility");
+  return visibility && visibility->Has("visible") && visibility->Get("visible").IsBool() &&
+         !visibility->Get("visible").Get<bool>();
 }
 
 /// One file while its nodes are walked; all methods throw Error{kInput} naming the mesh or
@@ -54,58 +44,58 @@ bool is_hidden(const Json& node) {
 class SceneReader {
  public:
   SceneReader(const std::string& path, GltfDocument& document)
-      : gltf_(path, document),
+      : gltf_(path, document.model),
+        model_(document.model),
         warnings_(document.warnings),
-        is_visited_(gltf_.count("nodes"), 0),
-        is_coarser_(gltf_.count("nodes"), 0) {}
+        is_visited_(model_.nodes.size(), 0),
+        is_coarser_(model_.nodes.size(), 0) {}
 
   RawFile read(int coarser);
 
  private:
-  const Json& node(int i) const { return gltf_.at("nodes", i, "node"); }
-  std::vector<int> links(const Json& object, const char* key) const;
+  const tinygltf::Node& node(int i) const { return gltf_.at(model_.nodes, i, "node"); }
+  const std::vector<int>& checked(const std::vector<int>& nodes) const;
   std::vector<int> level_ids(int node) const;
-  std::vector<int> children(const Json& node) const;
+  std::vector<int> children(const tinygltf::Node& node) const;
   std::vector<int> top_nodes() const;
   int coarser_node(int node, int levels) const;
-  std::vector<Matrix> instances(const Json& node) const;
+  std::vector<Matrix> instances(const tinygltf::Node& node) const;
   void visit(int node);
   int new_part(const std::string& name, int parent);
   std::vector<int> parts_of(const std::vector<int>& children, int part);
   void add_top(int node, const Matrix& above);
   void add_node(int node, const Matrix& parent, int part);
-  void add_mesh(const Json& node, const std::vector<Matrix>& places, int part, bool is_one_each);
+  void add_mesh(const tinygltf::Node& node, const std::vector<Matrix>& places, int part,
+                bool is_one_each);
   void place(const GltfPrimitive& own, const Matrix& matrix, int part);
   void set_origin();
 
   GltfReader gltf_;
+  const tinygltf::Model& model_;
   std::vector<std::string>& warnings_;
   std::vector<char> is_visited_, is_coarser_;
   RawFile raw_;
   bool has_targets_ = false;
 };
 
-std::vector<int> SceneReader::links(const Json& object, const char* key) const {
-  if (!object.contains(key)) return {};
-  std::vector<int> out;
-  for (const double d : numbers(object, key)) {
-    if (!(d >= 0) || d >= static_cast<double>(is_visited_.size()))
-      gltf_.fail("node " + Json(std::floor(d)).dump() + " of " +
-                 std::to_string(is_visited_.size()) + " is named but missing");
-    out.push_back(static_cast<int>(d));
-  }
-  return out;
+/// The same nodes; all of them are there.
+const std::vector<int>& SceneReader::checked(const std::vector<int>& nodes) const {
+  for (const int i : nodes) node(i);
+  return nodes;
 }
 
 /// The coarser levels that MSFT_lod names for a node, finest first.
 std::vector<int> SceneReader::level_ids(int index) const {
-  const Json* lod = extension_of(node(index), "MSFT_lod");
-  return lod ? links(*lod, "ids") : std::vector<int>();
+  const Value* lod = extension_of(node(index).extensions, "MSFT_lod");
+  if (!lod) return {};
+  std::vector<int> ids;
+  for (const double id : gltf_.numbers(*lod, "ids")) ids.push_back(static_cast<int>(id));
+  return checked(ids);
 }
 
 /// Without the coarser levels of others.
-std::vector<int> SceneReader::children(const Json& node) const {
-  std::vector<int> out = links(node, "children");
+std::vector<int> SceneReader::children(const tinygltf::Node& node) const {
+  std::vector<int> out = checked(node.children);
   std::erase_if(out, [&](int child) { return is_coarser_[child]; });
   return out;
 }
@@ -113,12 +103,12 @@ std::vector<int> SceneReader::children(const Json& node) const {
 /// The nodes of the scene that is shown; all of them when the file names no scene.
 std::vector<int> SceneReader::top_nodes() const {
   std::vector<int> tops;
-  if (gltf_.count("scenes") > 0) {
-    tops = links(gltf_.at("scenes", gltf_.integer(gltf_.json(), "scene", 0), "scene"), "nodes");
+  if (!model_.scenes.empty()) {
+    tops = checked(gltf_.at(model_.scenes, std::max(model_.defaultScene, 0), "scene").nodes);
   } else {
     std::vector<char> is_child(is_visited_.size(), 0);
-    for (std::size_t i = 0; i < is_child.size(); ++i)
-      for (const int child : links(node(static_cast<int>(i)), "children")) is_child[child] = 1;
+    for (const tinygltf::Node& above : model_.nodes)
+      for (const int child : checked(above.children)) is_child[child] = 1;
     for (std::size_t i = 0; i < is_child.size(); ++i)
       if (!is_child[i]) tops.push_back(static_cast<int>(i));
   }
@@ -135,10 +125,10 @@ int SceneReader::coarser_node(int index, int levels) const {
 }
 
 /// Where a node's mesh stands in the node's own frame: once, or as EXT_mesh_gpu_instancing says.
-std::vector<Matrix> SceneReader::instances(const Json& node) const {
-  const Json* extension = extension_of(node, "EXT_mesh_gpu_instancing");
+std::vector<Matrix> SceneReader::instances(const tinygltf::Node& node) const {
+  const Value* extension = extension_of(node.extensions, "EXT_mesh_gpu_instancing");
   if (!extension) return {Matrix::Identity()};
-  const Json attributes = extension->value("attributes", Json::object());
+  const Value attributes = extension->Has("attributes") ? extension->Get("attributes") : Value();
   const auto read = [&](const char* name, int components) {
     const int accessor = gltf_.integer(attributes, name);
     return accessor < 0 ? std::vector<double>() : gltf_.values(accessor, components);
@@ -172,13 +162,13 @@ int SceneReader::new_part(const std::string& name, int parent) {
 std::vector<int> SceneReader::parts_of(const std::vector<int>& children, int part) {
   std::vector<std::string> bases;
   for (const int child : children) {
-    const auto base = name_without_level(node(child).value("name", ""));
+    const auto base = name_without_level(node(child).name);
     bases.push_back(base ? "level of " + *base : "");
   }
   std::vector<int> parts;
   for (std::size_t i = 0; i < children.size(); ++i) {
     const bool is_level = !bases[i].empty() && std::count(bases.begin(), bases.end(), bases[i]) > 1;
-    parts.push_back(is_level ? new_part(node(children[i]).value("name", ""), part) : part);
+    parts.push_back(is_level ? new_part(node(children[i]).name, part) : part);
   }
   return parts;
 }
@@ -200,12 +190,11 @@ void SceneReader::place(const GltfPrimitive& own, const Matrix& matrix, int part
 }
 
 /// The mesh of a node at its places, all of one part or, from `part` on, one each.
-void SceneReader::add_mesh(const Json& node, const std::vector<Matrix>& places, int part,
+void SceneReader::add_mesh(const tinygltf::Node& node, const std::vector<Matrix>& places, int part,
                            bool is_one_each) {
-  const int index = gltf_.integer(node, "mesh");
-  if (index < 0) return;
-  for (const Json& p : gltf_.at("meshes", index, "mesh").value("primitives", Json::array())) {
-    has_targets_ = has_targets_ || p.contains("targets");
+  if (node.mesh < 0) return;
+  for (const tinygltf::Primitive& p : gltf_.at(model_.meshes, node.mesh, "mesh").primitives) {
+    has_targets_ = has_targets_ || !p.targets.empty();
     const GltfPrimitive own = gltf_.primitive(p);
     for (std::size_t i = 0; i < places.size(); ++i)
       place(own, places[i], is_one_each ? part + static_cast<int>(i) : part);
@@ -223,7 +212,7 @@ void SceneReader::add_node(int index, const Matrix& parent, int part) {
     const Step step = stack.back();
     stack.pop_back();
     visit(step.node);
-    const Json& at = node(step.node);
+    const tinygltf::Node& at = node(step.node);
     if (is_hidden(at)) continue;
     const Matrix matrix = step.above * local_matrix(at);
     std::vector<Matrix> places = instances(at);
@@ -236,9 +225,8 @@ void SceneReader::add_node(int index, const Matrix& parent, int part) {
 
 /// A node that may be a building; where it only says where its mesh stands, each place may be one.
 void SceneReader::add_top(int index, const Matrix& above) {
-  const Json& top = node(index);
-  const std::string given = top.value("name", "");
-  const std::string name = given.empty() ? "node" + std::to_string(index) : given;
+  const tinygltf::Node& top = node(index);
+  const std::string name = top.name.empty() ? "node" + std::to_string(index) : top.name;
   std::vector<Matrix> places = instances(top);
   if (places.size() < 2 || !children(top).empty() || is_hidden(top)) {
     add_node(index, above, new_part(name, -1));
@@ -255,11 +243,12 @@ void SceneReader::add_top(int index, const Matrix& above) {
 
 /// Our own files say where their origin lies, and CESIUM_RTC does; both z up.
 void SceneReader::set_origin() {
-  const Json asset = gltf_.json().value("asset", Json::object());
-  const std::vector<double> own = numbers(asset.value("extras", Json::object()), "origin");
-  if (asset.value("generator", "") == "colod" && own.size() == 3) raw_.origin += Vec3(own.data());
-  const Json* rtc = extension_of(gltf_.json(), "CESIUM_RTC");
-  const std::vector<double> center = rtc ? numbers(*rtc, "center") : std::vector<double>();
+  if (model_.asset.generator == "colod") {
+    const std::vector<double> own = gltf_.numbers(model_.asset.extras, "origin");
+    if (own.size() == 3) raw_.origin += Vec3(own.data());
+  }
+  const Value* rtc = extension_of(model_.extensions, "CESIUM_RTC");
+  const std::vector<double> center = rtc ? gltf_.numbers(*rtc, "center") : std::vector<double>();
   if (rtc && center.size() != 3) gltf_.fail("CESIUM_RTC: its center is not three numbers");
   if (!rtc) return;
   raw_.origin += Vec3(center.data());
@@ -277,9 +266,9 @@ RawFile SceneReader::read(int coarser) {
   std::vector<int> tops = top_nodes();
   Matrix above = Matrix::Identity();
   for (std::size_t depth = 0; tops.size() == 1 && depth < is_visited_.size(); ++depth) {
-    const Json& wrapper = node(tops[0]);
+    const tinygltf::Node& wrapper = node(tops[0]);
     const std::vector<int> below = children(wrapper);
-    if (wrapper.contains("mesh") || below.empty() || is_hidden(wrapper)) break;
+    if (wrapper.mesh >= 0 || below.empty() || is_hidden(wrapper)) break;
     above = above * local_matrix(wrapper);  // around the buildings
     tops = below;
   }
@@ -297,7 +286,7 @@ RawFile read_gltf(const std::string& path, const std::string& bytes, int coarser
   try {
     GltfDocument document = open_gltf(path, bytes);
     return SceneReader(path, document).read(coarser);
-  } catch (const Json::exception& e) {  // a member of another type than the format's
+  } catch (const nlohmann::json::exception& e) {  // a member of another type than the format's
     fail(path, std::string("glTF: ") + e.what());
   }
 }

@@ -1,8 +1,9 @@
 // Inside room 1 only: a glTF file from its bytes to numbers. The scene is mesh_io_gltf.cpp's.
 #pragma once
 
+#include <tiny_gltf.h>
+
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,19 +12,18 @@
 
 namespace colod::mesh_io {
 
-using Json = nlohmann::json;
-
-/// What a file holds before anything is read from it.
+/// A file as tinygltf took it apart, without what shapes do not need.
 struct GltfDocument {
-  Json json;                         ///< an object
-  std::vector<std::string> buffers;  ///< decoded; empty where the file says that it has no bytes
+  tinygltf::Model model;
   std::vector<std::string> warnings;
 };
 
-/// Takes container, JSON and buffers apart. Buffers lie in the file, in `data:` URIs, or in files
-/// at or below its folder. Throws Error{kInput}, also where the file needs an extension that is not
-/// read.
+/// Buffers lie in the file, in `data:` URIs, or in files at or below its folder. Throws
+/// Error{kInput}, also where the file needs an extension that is not read.
 GltfDocument open_gltf(const std::string& path, std::string_view bytes);
+
+/// nullptr: there is none of that name.
+const tinygltf::Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* name);
 
 /// A primitive's own points and corners, before its node places them.
 struct GltfPrimitive {
@@ -31,23 +31,31 @@ struct GltfPrimitive {
   std::vector<int> corners;  ///< three a triangle; empty: points or lines only
 };
 
-/// Everything that is checked when a document is read. All methods throw Error{kInput}.
+/// Everything that is checked when a document is read: tinygltf hands out indices, offsets and
+/// counts as they are written. All methods throw Error{kInput}.
 class GltfReader {
  public:
-  GltfReader(const std::string& path, const GltfDocument& document);
+  GltfReader(const std::string& path, const tinygltf::Model& model);
 
   [[noreturn]] void fail(const std::string& cause) const;
-  const Json& json() const { return document_.json; }
+  const tinygltf::Model& model() const { return model_; }
 
-  /// Entry i of a list of the document; `what` is one of them in words.
-  const Json& at(const char* list, int i, const char* what) const;
-  std::size_t count(const char* list) const;
+  /// Entry i of a list of the model; `what` is one of them in words.
+  template <typename T>
+  const T& at(const std::vector<T>& list, int i, const char* what) const {
+    if (i < 0 || static_cast<std::size_t>(i) >= list.size())
+      fail(std::string(what) + " " + std::to_string(i) + " of " + std::to_string(list.size()) +
+           " is named but missing");
+    return list[static_cast<std::size_t>(i)];
+  }
   /// A member that is a whole number, or `none` where it is absent.
-  int integer(const Json& object, const char* key, int none = -1) const;
+  int integer(const tinygltf::Value& object, const char* key, int none = -1) const;
+  /// A member that lists numbers; empty where it is absent.
+  std::vector<double> numbers(const tinygltf::Value& object, const char* key) const;
 
   /// count × components numbers, as floats or normalized.
   std::vector<double> values(int accessor, int components) const;
-  GltfPrimitive primitive(const Json& primitive) const;
+  GltfPrimitive primitive(const tinygltf::Primitive& primitive) const;
 
   /// Counts what is placed. A file may hold few bytes and say that they stand in many places: it
   /// fails where that comes to more than 12 million corners beyond what its bytes could hold.
@@ -61,15 +69,15 @@ class GltfReader {
     std::string_view bytes() const { return unpacked.empty() ? stored : unpacked; }
   };
   View view(int index) const;
-  View unpack(int index, const Json& extension) const;
-  std::string_view slice(const Json& holder, const std::string& place) const;
-  std::size_t size_of(const Json& object, const char* key, std::size_t none) const;
-  void replace_sparse(const Json& sparse, int component_type, int components, bool is_normalized,
-                      const std::string& place, std::vector<double>& values) const;
-  GltfPrimitive draco(const Json& extension) const;
+  View unpack(int index, const tinygltf::Value& extension) const;
+  std::string_view slice(int buffer, std::size_t offset, std::size_t length,
+                         const std::string& place) const;
+  void replace_sparse(const tinygltf::Accessor& accessor, int components, const std::string& place,
+                      std::vector<double>& values) const;
+  GltfPrimitive draco(const tinygltf::Value& extension) const;
 
   const std::string& path_;
-  const GltfDocument& document_;
+  const tinygltf::Model& model_;
   std::size_t budget_ = 0;
 };
 

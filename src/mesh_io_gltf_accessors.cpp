@@ -22,15 +22,7 @@ constexpr std::size_t kCornersPerByte = 16;       // Draco's best is about 10
 constexpr std::size_t kMeshoptGain = 64;  // 16 bytes may take 2 bits: no stream unpacks to more
 constexpr double kMostExact = 9007199254740992;  // 2^53
 
-enum ComponentType {
-  kByte = 5120,
-  kUnsignedByte = 5121,
-  kShort = 5122,
-  kUnsignedShort = 5123,
-  kUnsignedInt = 5125,
-  kFloat = 5126
-};
-enum Mode { kPoints = 0, kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
+using tinygltf::Value;
 
 template <typename T>
 double as_double(const char* bytes, bool is_normalized) {
@@ -45,40 +37,26 @@ double as_double(const char* bytes, bool is_normalized) {
 
 double component(const char* bytes, int type, bool is_normalized) {
   switch (type) {
-    case kByte:
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
       return as_double<std::int8_t>(bytes, is_normalized);
-    case kUnsignedByte:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return as_double<std::uint8_t>(bytes, is_normalized);
-    case kShort:
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
       return as_double<std::int16_t>(bytes, is_normalized);
-    case kUnsignedShort:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return as_double<std::uint16_t>(bytes, is_normalized);
-    case kUnsignedInt:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return as_double<std::uint32_t>(bytes, is_normalized);
     default:
       return as_double<float>(bytes, false);
   }
 }
 
-/// Bytes; 0: no such type.
+/// Bytes; 0: no type of the format. tinygltf knows two more, int and double.
 std::size_t size_of_component(int type) {
-  switch (type) {
-    case kByte:
-    case kUnsignedByte:
-      return 1;
-    case kShort:
-    case kUnsignedShort:
-      return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
-    default:
-      return 0;
-  }
-}
-
-int components_of(const std::string& type) {
-  return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
+  if (type == TINYGLTF_COMPONENT_TYPE_INT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE) return 0;
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type));
+  return static_cast<std::size_t>(std::max(size, 0));
 }
 
 /// Numbers that lie `stride` bytes apart in `bytes`; false: not that many are there.
@@ -101,10 +79,10 @@ bool take_numbers(std::string_view bytes, std::size_t offset, std::size_t stride
 
 /// Triangles of a list, strip or fan.
 std::vector<int> unroll(const std::vector<int>& indices, int mode) {
-  if (mode == kTriangles) return indices;
+  if (mode == TINYGLTF_MODE_TRIANGLES) return indices;
   std::vector<int> out;
   for (std::size_t i = 2; i < indices.size(); ++i) {
-    const bool is_odd = i % 2 == 1, is_fan = mode == kTriangleFan;
+    const bool is_odd = i % 2 == 1, is_fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
     const int a = is_fan ? indices[0] : indices[is_odd ? i - 1 : i - 2];
     const int b = is_fan ? indices[i - 1] : indices[is_odd ? i - 2 : i - 1];
     out.insert(out.end(), {a, b, indices[i]});
@@ -112,49 +90,54 @@ std::vector<int> unroll(const std::vector<int>& indices, int mode) {
   return out;
 }
 
-const Json* extension_of(const Json& object, const char* name) {
-  const auto list = object.find("extensions");
-  if (list == object.end() || !list->is_object()) return nullptr;
-  const auto found = list->find(name);
-  return found == list->end() ? nullptr : &*found;
+/// A member that is a whole number, or `none` where it is absent.
+std::size_t size_of(const GltfReader& reader, const Value& object, const char* key,
+                    std::size_t none = 0) {
+  if (!object.Has(key)) return none;
+  const Value& member = object.Get(key);
+  const double value = member.IsNumber() ? member.GetNumberAsDouble() : -1;
+  if (!(value >= 0) || value > kMostExact || value != std::floor(value))
+    reader.fail(std::string("'") + key + "' is no whole number");
+  return static_cast<std::size_t>(value);
+}
+
+std::string text_of(const Value& object, const char* key, const char* none) {
+  return object.Has(key) && object.Get(key).IsString() ? object.Get(key).Get<std::string>() : none;
 }
 
 }  // namespace
 
-GltfReader::GltfReader(const std::string& path, const GltfDocument& document)
-    : path_(path), document_(document), budget_(kFreeCorners) {
-  for (const std::string& buffer : document.buffers) budget_ += kCornersPerByte * buffer.size();
+const Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* name) {
+  const auto found = extensions.find(name);
+  return found == extensions.end() ? nullptr : &found->second;
+}
+
+GltfReader::GltfReader(const std::string& path, const tinygltf::Model& model)
+    : path_(path), model_(model), budget_(kFreeCorners) {
+  for (const tinygltf::Buffer& buffer : model.buffers)
+    budget_ += kCornersPerByte * buffer.data.size();
 }
 
 void GltfReader::fail(const std::string& cause) const { mesh_io::fail(path_, cause); }
 
-std::size_t GltfReader::count(const char* list) const {
-  const auto found = json().find(list);
-  return found != json().end() && found->is_array() ? found->size() : 0;
-}
-
-const Json& GltfReader::at(const char* list, int i, const char* what) const {
-  if (i < 0 || static_cast<std::size_t>(i) >= count(list))
-    fail(std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count(list)) +
-         " is named but missing");
-  return json()[list][static_cast<std::size_t>(i)];
-}
-
-std::size_t GltfReader::size_of(const Json& object, const char* key, std::size_t none) const {
-  const auto found = object.find(key);
-  if (found == object.end()) return none;
-  const double value = found->is_number() ? found->get<double>() : -1;
-  if (!(value >= 0) || value > kMostExact || value != std::floor(value))
-    fail(std::string("'") + key + "' is no whole number");
-  return static_cast<std::size_t>(value);
-}
-
-int GltfReader::integer(const Json& object, const char* key, int none) const {
-  if (!object.contains(key)) return none;
-  const std::size_t value = size_of(object, key, 0);
+int GltfReader::integer(const Value& object, const char* key, int none) const {
+  if (!object.Has(key)) return none;
+  const std::size_t value = size_of(*this, object, key);
   if (value > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     fail(std::string("'") + key + "' is too large");
   return static_cast<int>(value);
+}
+
+std::vector<double> GltfReader::numbers(const Value& object, const char* key) const {
+  std::vector<double> out;
+  if (!object.Has(key)) return out;
+  const Value& list = object.Get(key);
+  for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
+    const Value& number = list.Get(static_cast<int>(i));
+    if (!number.IsNumber()) fail(std::string("'") + key + "' lists what is no number");
+    out.push_back(number.GetNumberAsDouble());
+  }
+  return out;
 }
 
 void GltfReader::spend(std::size_t points_and_corners) {
@@ -165,24 +148,23 @@ void GltfReader::spend(std::size_t points_and_corners) {
   budget_ -= points_and_corners;
 }
 
-/// The bytes that `buffer`, `byteOffset` and `byteLength` of a view or an extension name.
-std::string_view GltfReader::slice(const Json& holder, const std::string& place) const {
-  const int buffer = integer(holder, "buffer");
-  at("buffers", buffer, "buffer");
-  const std::string& data = document_.buffers[buffer];
-  const std::size_t offset = size_of(holder, "byteOffset", 0);
-  const std::size_t length = size_of(holder, "byteLength", 0);
+std::string_view GltfReader::slice(int buffer, std::size_t offset, std::size_t length,
+                                   const std::string& place) const {
+  const std::vector<unsigned char>& data = at(model_.buffers, buffer, "buffer").data;
   if (offset > data.size() || length > data.size() - offset)
     fail(place + " reaches beyond its buffer");
-  return std::string_view(data).substr(offset, length);
+  return {reinterpret_cast<const char*>(data.data()) + offset, length};
 }
 
-GltfReader::View GltfReader::unpack(int index, const Json& extension) const {
+GltfReader::View GltfReader::unpack(int index, const Value& extension) const {
   const std::string place = "buffer view " + std::to_string(index);
-  const std::string_view payload = slice(extension, place);
-  const std::size_t count = size_of(extension, "count", 0);
-  const std::size_t stride = size_of(extension, "byteStride", 0);
-  const std::string mode = extension.value("mode", ""), filter = extension.value("filter", "NONE");
+  const std::string_view payload =
+      slice(integer(extension, "buffer"), size_of(*this, extension, "byteOffset"),
+            size_of(*this, extension, "byteLength"), place);
+  const std::size_t count = size_of(*this, extension, "count");
+  const std::size_t stride = size_of(*this, extension, "byteStride");
+  const std::string mode = text_of(extension, "mode", "");
+  const std::string filter = text_of(extension, "filter", "NONE");
   if (stride == 0 || stride > 256 || count > kMeshoptGain * (payload.size() + 64) / stride)
     fail(place + ": meshopt data that cannot be as long as they say");
   if (!payload.empty() && (payload[0] & 0x0f) > (mode == "ATTRIBUTES" ? 0 : 1))
@@ -196,26 +178,31 @@ GltfReader::View GltfReader::unpack(int index, const Json& extension) const {
 }
 
 GltfReader::View GltfReader::view(int index) const {
-  const Json& v = at("bufferViews", index, "buffer view");
+  const tinygltf::BufferView& v = at(model_.bufferViews, index, "buffer view");
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-    if (const Json* extension = extension_of(v, name)) return unpack(index, *extension);
-  return {slice(v, "buffer view " + std::to_string(index)), {}, size_of(v, "byteStride", 0)};
+    if (const Value* extension = extension_of(v.extensions, name)) return unpack(index, *extension);
+  const std::string place = "buffer view " + std::to_string(index);
+  return {slice(v.buffer, v.byteOffset, v.byteLength, place), {}, v.byteStride};
 }
 
 /// Puts the values of a sparse accessor at their places.
-void GltfReader::replace_sparse(const Json& sparse, int component_type, int components,
-                                bool is_normalized, const std::string& place,
-                                std::vector<double>& values) const {
-  const std::size_t count = size_of(sparse, "count", 0);
-  const Json &at = sparse.at("indices"), &from = sparse.at("values");
-  const int index_type = integer(at, "componentType");
+void GltfReader::replace_sparse(const tinygltf::Accessor& a, int components,
+                                const std::string& place, std::vector<double>& values) const {
+  const auto unsigned_size = [](int n) {  // what is negative lies beyond every view
+    return n < 0 ? std::numeric_limits<std::size_t>::max() : static_cast<std::size_t>(n);
+  };
+  const std::size_t count = unsigned_size(a.sparse.count);
+  const int index_type = a.sparse.indices.componentType;
   std::vector<double> indices, replaced;
-  const bool is_index = size_of_component(index_type) > 0 && index_type != kFloat;
+  const bool is_index =
+      size_of_component(index_type) > 0 && index_type != TINYGLTF_COMPONENT_TYPE_FLOAT;
   if (!is_index ||
-      !take_numbers(view(integer(at, "bufferView")).bytes(), size_of(at, "byteOffset", 0), 0, count,
-                    1, index_type, false, indices) ||
-      !take_numbers(view(integer(from, "bufferView")).bytes(), size_of(from, "byteOffset", 0), 0,
-                    count, components, component_type, is_normalized, replaced))
+      !take_numbers(view(a.sparse.indices.bufferView).bytes(),
+                    unsigned_size(a.sparse.indices.byteOffset), 0, count, 1, index_type, false,
+                    indices) ||
+      !take_numbers(view(a.sparse.values.bufferView).bytes(),
+                    unsigned_size(a.sparse.values.byteOffset), 0, count, components,
+                    a.componentType, a.normalized, replaced))
     fail(place + ": its sparse part reaches beyond its buffer view");
   const auto width = static_cast<std::size_t>(components);
   for (std::size_t i = 0; i < count; ++i) {
@@ -228,29 +215,26 @@ void GltfReader::replace_sparse(const Json& sparse, int component_type, int comp
 }
 
 std::vector<double> GltfReader::values(int accessor, int components) const {
-  const Json& a = at("accessors", accessor, "accessor");
+  const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
   const std::string place = "accessor " + std::to_string(accessor);
-  const int type = integer(a, "componentType");
-  const std::size_t count = size_of(a, "count", 0);
-  const bool is_normalized = a.value("normalized", false);
-  if (components_of(a.value("type", "")) != components || size_of_component(type) == 0)
+  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)) != components ||
+      size_of_component(a.componentType) == 0)
     fail(place + " has a type that does not belong there");
   std::vector<double> values;
-  if (a.contains("bufferView")) {
-    const View seen = view(integer(a, "bufferView"));
-    if (!take_numbers(seen.bytes(), size_of(a, "byteOffset", 0), seen.stride, count, components,
-                      type, is_normalized, values))
+  if (a.bufferView >= 0) {
+    const View seen = view(a.bufferView);
+    if (!take_numbers(seen.bytes(), a.byteOffset, seen.stride, a.count, components, a.componentType,
+                      a.normalized, values))
       fail(place + " reaches beyond its buffer view (truncated)");
   } else {
-    if (count > budget_) fail(place + " has more elements than the file could hold");
-    values.assign(count * static_cast<std::size_t>(components), 0.0);
+    if (a.count > budget_) fail(place + " has more elements than the file could hold");
+    values.assign(a.count * static_cast<std::size_t>(components), 0.0);
   }
-  if (a.contains("sparse"))
-    replace_sparse(a["sparse"], type, components, is_normalized, place, values);
+  if (a.sparse.isSparse) replace_sparse(a, components, place, values);
   return values;
 }
 
-GltfPrimitive GltfReader::draco(const Json& extension) const {
+GltfPrimitive GltfReader::draco(const Value& extension) const {
   const View seen = view(integer(extension, "bufferView"));
   draco::DecoderBuffer buffer;
   buffer.Init(seen.bytes().data(), seen.bytes().size());
@@ -258,7 +242,8 @@ GltfPrimitive GltfReader::draco(const Json& extension) const {
   const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok()) fail("Draco: " + decoded.status().error_msg_string());
   const draco::Mesh& mesh = *decoded.value();
-  const int id = integer(extension.value("attributes", Json::object()), "POSITION");
+  const int id =
+      extension.Has("attributes") ? integer(extension.Get("attributes"), "POSITION") : -1;
   const draco::PointAttribute* position =
       mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
   if (!position || position->num_components() != 3) fail("Draco: no positions under the given id");
@@ -275,23 +260,24 @@ GltfPrimitive GltfReader::draco(const Json& extension) const {
   return out;
 }
 
-GltfPrimitive GltfReader::primitive(const Json& primitive) const {
+GltfPrimitive GltfReader::primitive(const tinygltf::Primitive& primitive) const {
   GltfPrimitive out;
-  const int mode = integer(primitive, "mode", kTriangles);
-  if (mode != kPoints && mode < kTriangles) return out;  // lines
-  if (const Json* extension = extension_of(primitive, "KHR_draco_mesh_compression"))
+  const int mode = primitive.mode;
+  if (mode != TINYGLTF_MODE_POINTS && mode < TINYGLTF_MODE_TRIANGLES) return out;  // lines
+  if (const Value* extension = extension_of(primitive.extensions, "KHR_draco_mesh_compression"))
     return draco(*extension);
-  const int position = integer(primitive.value("attributes", Json::object()), "POSITION");
+  const auto named = primitive.attributes.find("POSITION");
+  const int position = named == primitive.attributes.end() ? -1 : named->second;
   if (position < 0) return out;
   const std::vector<double> xyz = values(position, 3);
   for (std::size_t i = 0; i < xyz.size(); i += 3)
     out.points.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
-  if (mode == kPoints) return out;
+  if (mode == TINYGLTF_MODE_POINTS) return out;
   std::vector<int> indices(out.points.size());
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<int>(i);
-  if (const int accessor = integer(primitive, "indices"); accessor >= 0) {
+  if (primitive.indices >= 0) {
     indices.clear();
-    for (const double v : values(accessor, 1)) {
+    for (const double v : values(primitive.indices, 1)) {
       if (!(v >= 0) || v >= static_cast<double>(out.points.size()))
         fail("index " + std::to_string(indices.size()) + " names a vertex beyond " +
              std::to_string(out.points.size()));

@@ -388,3 +388,35 @@ TEST_CASE("numbers that are none, and JSON that never ends, are refused") {
   CHECK_THAT(failure("a.gltf", "[]"), Contains("not JSON"));
   CHECK_THAT(failure("a.gltf", R"({"asset":{"version":"1.0"}})"), Contains("version 1.0"));
 }
+
+TEST_CASE("files are read however long they are, under any name, with numbers in any spelling") {
+  const TempFolder folder;
+  Gltf g;
+  folder.write("a+b c.bin", g.bin + "more");
+  g.json["buffers"] = {{{"byteLength", g.bin.size()}, {"uri", "a+b%20c.bin"}}};
+  g.json["accessors"][0]["count"] = static_cast<double>(kHouse.vertices.size());  // 10.0
+  CHECK(volume(read_sources({folder.write("a.gltf", g.json.dump())})) == Approx(720));
+  g.json["buffers"][0]["byteLength"] = g.bin.size() + 100;
+  CHECK_THAT(read_sources({folder.write("a.gltf", g.json.dump())}).failures.at(0).message,
+             Contains("File size mismatch"));
+}
+
+TEST_CASE(
+    "a container that is cut or says too much is refused, what it may leave out is not missed") {
+  const std::string glb = Gltf().glb();
+  for (std::size_t size = 4; size < glb.size(); size += 7)
+    CHECK(!failure("a.glb", glb.substr(0, size)).empty());
+  std::string bad = glb;
+  const std::size_t chunk = glb.find(std::string("BIN\0", 4)) - 4;
+  bad[chunk] = static_cast<char>(bad[chunk] + 8);
+  CHECK_THAT(failure("a.glb", bad), Contains("truncated"));
+  Gltf offset;
+  offset.json["bufferViews"][0]["byteOffset"] = -4;
+  CHECK_THAT(offset.why(), Contains("'byteOffset'"));
+  Gltf crowd;  // buffers without bytes, and extras of any shape
+  for (int i = 0; i < 3; ++i) crowd.json["nodes"][0]["extras"][i] = Json::object();
+  crowd.json["buffers"] = {{{"byteLength", 4000000000}}};
+  CHECK(volume(crowd.read()) == Approx(720));
+  crowd.json["bufferViews"][0]["buffer"] = 1;
+  CHECK_THAT(crowd.why(), Contains("beyond its buffer"));
+}
