@@ -20,7 +20,7 @@ constexpr double kHeights[] = {1.0, 0.9, 0.8, 0.7, 0.6, 0.5};  // shares of the 
 constexpr int kLattice = 16;  // steps along a box's side where it is measured
 constexpr double kFinestStep = 0.1;
 constexpr double kLeastHalf = 0.05;    // metres: a box has a volume
-constexpr double kLeastStep = 1.25;    // from the coarsest level's gsd to its box's
+constexpr double kLeastStep = 1.2;     // from the coarsest level's gsd to its box's
 constexpr double kLeastSample = 0.05;  // metres, of pictures that boxes are judged by …
 constexpr double kSamples = 4;         // … or so many along the smallest pixel that matters
 

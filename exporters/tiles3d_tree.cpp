@@ -19,8 +19,8 @@ constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm 
 constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
 constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
 constexpr std::size_t kMostStandIns = 64;  // in one tile
-constexpr double kWorthATile =
-    1.4;  // nearer by this factor: a little less than a level's least step
+constexpr double kNearer = 1.005;  // scope scene: a level may stand so much nearer than others' …
+constexpr double kWorthATile = 1.4;  // … scope building: so much nearer that it is worth a tile
 
 void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<StandIn>& boxes) {
   tile.parts.clear();
@@ -35,6 +35,7 @@ class Planner {
   Planner(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts)
       : buildings_(buildings),
         pixel_error_(facts.pixel_error),
+        worth_a_tile_(facts.scope == "scene" ? kNearer : kWorthATile),
         boxes_(buildings.size()),
         singles_(buildings.size()) {
     parallel_for(buildings.size(), [&](std::size_t i) {
@@ -109,10 +110,11 @@ class Planner {
   }
 
   /// The level that a building's chain starts with, below a group that stands from `gsd` on: the
-  /// coarsest again where it may stand much nearer, or has no finer one and is replaced by itself.
+  /// coarsest again where it may stand nearer (in scope scene at all, so that no building is finer
+  /// than one before it), or has no finer one and is replaced by itself.
   std::size_t first_below(int b, double gsd) const {
     const std::vector<ExportLevel>& levels = buildings_[b].levels;
-    return levels.size() == 1 || kWorthATile * levels.front().gsd < gsd ? 0 : 1;
+    return levels.size() == 1 || worth_a_tile_ * levels.front().gsd < gsd ? 0 : 1;
   }
 
   /// The building's levels from this one on, each the only child of the coarser one.
@@ -177,7 +179,8 @@ class Planner {
 
   const std::vector<ExportBuilding>& buildings_;
   double pixel_error_;
-  std::vector<Box> boxes_;        // of the coarsest levels, world
+  double worth_a_tile_;     // a factor between the gsds of a group and of one of its buildings
+  std::vector<Box> boxes_;  // of the coarsest levels, world
   std::vector<StandIn> singles_;  // one a building
   TilePlan plan_;
 };

@@ -144,7 +144,7 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
     for (const ExportBuilding& b : buildings) {
       boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size()),
                                    {.measure = measure, .visual_error = 2, .layer_gsd = {}}));
-      CHECK(boxes.back().gsd > 1.2 * b.levels.front().gsd);
+      CHECK(boxes.back().gsd > 1.15 * b.levels.front().gsd);
     }
     std::vector<StandIn> alike = boxes;
     agree_on_switch(alike, {.layer_gsd = {0.6, 0.3, 0}});
