@@ -89,7 +89,9 @@ std::vector<int> SceneReader::level_ids(int index) const {
   const Value* lod = extension_of(node(index).extensions, "MSFT_lod");
   if (!lod) return {};
   std::vector<int> ids;
-  for (const double id : gltf_.numbers(*lod, "ids")) ids.push_back(static_cast<int>(id));
+  const auto count = static_cast<double>(model_.nodes.size());
+  for (const double id : gltf_.numbers(*lod, "ids"))
+    ids.push_back(id >= 0 && id < count ? static_cast<int>(id) : -1);
   return checked(ids);
 }
 
