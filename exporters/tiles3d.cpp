@@ -218,7 +218,9 @@ Json start_tileset(const Scene& scene, const TileFrame& frame, Tile root) {
       {"offset", vec_json(frame.origin())},
       {"targetSse", scene.options.target_sse},
       {"switching", switching_json(scene.options.switching)}};
-  tileset["geometricError"] = std::max(16 * root.error, root.box.diagonal());  // drawn from afar
+  // Drawn from afar: until all of it covers less than a pixel.
+  tileset["geometricError"] =
+      std::max(16 * root.error, scene.options.target_sse * root.box.diagonal());
   root.json["refine"] = "REPLACE";
   tileset["root"] = std::move(root.json);
   return tileset;

@@ -267,6 +267,8 @@ TEST_CASE("a tileset's tiles hold their boxes, errors and buildings") {
     CHECK(!tileset["root"].contains("transform"));
     CHECK(tileset["geometricError"].get<double>() >=
           4 * tileset["root"]["geometricError"].get<double>());
+    CHECK(tileset["geometricError"].get<double>() >=
+          16 * box_of(tileset["root"]).diagonal());  // in sight until it is a pixel
     CHECK(check_tile(tileset["root"], files).size() == static_cast<std::size_t>(n));
   }
 }

@@ -19,7 +19,7 @@ async function open(url) {
 /** Bytes of tiles answered since `from`. */
 const tileBytes = (from) => server.log.slice(from).filter(({ url }) => url.endsWith('.glb')).reduce((sum, { bytes }) => sum + bytes, 0);
 
-async function flyIn(client, folder, name, stops = [['far', 8000], ['middle', 500], ['near', 60]]) {
+async function flyIn(client, folder, name, stops = [['far', 8000], ['middle', 200], ['near', 60]]) {
   const finest = finestContents(path.join(root, folder));
   const triangles = finest.reduce((sum, file) => sum + trianglesOf(file), 0);
   const bytes = finest.reduce((sum, file) => sum + fs.statSync(file).size, 0);

@@ -93,8 +93,8 @@ async function idle(page) {
 }
 
 const scenes = {
-  local: { finer: 4, place: /^local/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
-  earth: { finer: 4, place: /UTM zone 32N/, name: /^house_\d\d$/, source: /source\s+houses\/house_\d\d\.obj/ },
+  local: { finer: 4, place: /^local/, name: /^house_\d\d$/, source: /source\s+house_\d\d\.obj/ },
+  earth: { finer: 4, place: /UTM zone 32N/, name: /^house_\d\d$/, source: /source\s+house_\d\d\.obj/ },
   street: { finer: 8, place: /touching plane/, name: /^b\d+$/, source: /source\s+b\d+\.obj/ },  // 300 houses: external tilesets
 };
 
