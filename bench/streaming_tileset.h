@@ -39,7 +39,7 @@ struct Place {
 struct Tileset {
   Vec3 offset = Vec3::Zero();           ///< from the tileset's frame to the input's coordinates
   double limit = 16;                    ///< pixels: the screen-space error that it is made for
-  double bound = 12;                    ///< pixels: what a switch may show, by --visual-error
+  double bound = 14;                    ///< pixels: what a switch may show, by --visual-error
   std::vector<Eigen::Affine3d> frames;  ///< to the tileset's frame; the first is that frame itself
   std::vector<Tile> tiles;              ///< the root first, parents before children
   std::vector<Place> buildings;

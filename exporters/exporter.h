@@ -43,7 +43,7 @@ struct ExportBuilding {
 struct SwitchFacts {
   std::string measure = "visual";  ///< or "deviation"
   std::string scope = "scene";     ///< or "building"
-  double visual_error = 12;        ///< pixels that the difference may have (visual)
+  double visual_error = 14;        ///< pixels that the difference may have (visual)
   double pixel_error = 2;          ///< pixels that the deviation may have (deviation; stand-ins)
   double share = 0.9;              ///< scene: of the buildings whose own bound is kept
   double viewport_height = 1080;   ///< pixels, that coverages and distances are for

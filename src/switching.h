@@ -58,7 +58,7 @@ const char* to_string(SwitchScope scope);
 struct SwitchOptions {
   SwitchMeasure measure = SwitchMeasure::kVisual;
   SwitchScope scope = SwitchScope::kScene;
-  double visual_error = 12;  ///< pixels: N of PictureDifference
+  double visual_error = 14;  ///< pixels: N of PictureDifference
   double pixel_error = 2;   ///< pixels
   double share = 0.9;       ///< of the buildings whose own bound the scene's g_k keeps
   double rounding = 0;      ///< metres that vertices are moved by; no g is below its share

@@ -207,7 +207,7 @@ void add_switch_options(CLI::App& app, SwitchOptions& o) {
   app.add_option(
          "--visual-error", o.visual_error,
          "with --switch visual: a change may be as large as a square of this side [pixels], "
-         "default 12")
+         "default 14")
       ->check(number_between(1.0, 32.0));
   app.add_option("--pixel-error", o.pixel_error,
                  "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
