@@ -61,7 +61,7 @@ ExportBuilding with_plates(double thickness) {
     mesh =
         join(mesh, turned(box_mesh(corner, corner + Vec3(1.7, 0.9, thickness)), 0.1 * i, 0.07 * i));
   }
-  return {"plates", "plates.obj", Vec3::Zero(), {{{0}, as_polygons(mesh), 0, 0}}};
+  return {"plates", "plates.obj", Vec3::Zero(), {{{0}, as_polygons(mesh), 0, 0}}, "plates"};
 }
 
 /// Faces whose corners, rounded as they are, tell another direction than the normals.
