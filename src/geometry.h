@@ -47,7 +47,7 @@ struct PointCloud {
 
 /// What a room parted from a building's source.
 struct LeftOut {
-  enum class Reason { kGround, kFloater };
+  enum class Reason { kGround, kFloater, kInside };
   Reason reason = Reason::kFloater;
   double area = 0;      ///< m²; 0 for points
   double share = 0;     ///< 0..1 of the input's area, or of its points

@@ -67,7 +67,15 @@ LeftOut measure_points(const std::vector<Vec3>& points, const std::vector<char>&
 }  // namespace
 
 const char* to_string(LeftOut::Reason reason) {
-  return reason == LeftOut::Reason::kGround ? "ground" : "floater";
+  switch (reason) {
+    case LeftOut::Reason::kGround:
+      return "ground";
+    case LeftOut::Reason::kFloater:
+      return "floater";
+    case LeftOut::Reason::kInside:
+      return "inside";
+  }
+  return "";
 }
 
 LeftOut measure_left_out(const Source& source, const std::vector<char>& is_left_out,

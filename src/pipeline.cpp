@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "ground.h"
+#include "hidden.h"
 #include "left_out.h"
 #include "parallel.h"
 #include "stopwatch.h"
@@ -222,7 +223,7 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
-    if (!is_paper(options)) b.source = separate_ground(std::move(b.source));
+    if (!is_paper(options)) b.source = remove_hidden(separate_ground(std::move(b.source)));
     find_segments(b, options);
     b.left_out = b.source.left_out;
     if (const std::vector<char> parted = floaters(b.planes); !parted.empty())

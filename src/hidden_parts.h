@@ -1,0 +1,17 @@
+// What the files of the room `hidden` share.
+#pragma once
+
+#include "geometry.h"
+
+namespace colod::hidden {
+
+/// `mesh` with the flagged faces cut where other faces of `mesh` meet them; `face_of[i]` is the
+/// face that face i is a piece of. New vertices are rounded to `grid` metres and equal ones merged.
+/// Faces that none meets, and those met by more than a thousand, stay whole. Exact inside.
+struct Pieces {
+  Mesh mesh;
+  std::vector<int> face_of;
+};
+Pieces cut_faces(const Mesh& mesh, const std::vector<char>& is_cut, double grid);
+
+}  // namespace colod::hidden
