@@ -46,6 +46,28 @@ Mesh furnished_storey(int count, double depth, double width) {
   return m;
 }
 
+/// A block of 12 × 8 × 6 m with a hole of that width, depth and height in its front, at its foot;
+/// one as deep as the block leads through it.
+Mesh block_with_niche(const Vec3& size) {
+  const double x0 = 5, x1 = 5 + size.x(), y = size.y(), z = size.z();
+  const auto quad = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return Mesh{{a, b, c, d}, {{0, 1, 2}, {0, 2, 3}}};
+  };
+  Mesh m = box_mesh({0, 0, 0}, {12, 8, 6});
+  m.faces.erase(m.faces.begin() + 4, m.faces.begin() + (y < 8 ? 6 : 8));  // its front; its back
+  for (const double at : {0.0, 8.0}) {
+    if (at > y) break;
+    m = test::join(m, quad({0, at, 0}, {x0, at, 0}, {x0, at, 6}, {0, at, 6}));
+    m = test::join(m, quad({x1, at, 0}, {12, at, 0}, {12, at, 6}, {x1, at, 6}));
+    m = test::join(m, quad({x0, at, z}, {x1, at, z}, {x1, at, 6}, {x0, at, 6}));
+  }
+  m = test::join(m, quad({x0, 0, 0}, {x0, y, 0}, {x0, y, z}, {x0, 0, z}));
+  m = test::join(m, quad({x1, y, 0}, {x1, 0, 0}, {x1, 0, z}, {x1, y, z}));
+  m = test::join(m, quad({x0, 0, z}, {x0, y, z}, {x1, y, z}, {x1, 0, z}));
+  if (y < 8) m = test::join(m, quad({x0, y, 0}, {x1, y, 0}, {x1, y, z}, {x0, y, z}));
+  return m;
+}
+
 /// Area of faces whose middle lies in the box.
 double area_within(const Mesh& mesh, const Box& box) {
   double sum = 0;
@@ -67,12 +89,19 @@ TEST_CASE("single shells stay as they are") {
   expect_unchanged(open);
 }
 
-TEST_CASE("courts, shafts and recesses are outside") {
-  for (const double width : {1.0, 2.0, 6.0}) {  // of a court between four wings
+TEST_CASE("courts and shafts are outside") {
+  for (const double width : {1.0, 2.0, 6.0}) {  // between two wings
     Mesh m = box_mesh({0, 0, 0}, {20, 5, 9});
     m = test::join(m, box_mesh({0, 5 + width, 0}, {20, 10 + width, 9}));
     expect_unchanged(m);
   }
+}
+
+TEST_CASE("niches, porches and passages are outside") {
+  for (const Vec3& size : {Vec3(1.2, 1.0, 2.2), Vec3(2.1, 3.4, 2.1), Vec3(4, 3, 2.4)})
+    expect_unchanged(block_with_niche(size));
+  for (const double width : {1.8, 2.4, 4.0})  // through the house
+    expect_unchanged(block_with_niche({width, 8, 2.4}));
 }
 
 TEST_CASE("boxes that stand on each other are one shell") {
@@ -94,8 +123,7 @@ TEST_CASE("boxes that stand on each other are one shell") {
 TEST_CASE("bodies that run through each other are cut where they meet") {
   for (const double turn : {0.0, 0.4}) {
     Mesh wing = box_mesh({-4, -3, 0}, {4, 3, 6});
-    for (Vec3& v : wing.vertices)
-      v = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * v + Vec3(9, 10, 0);
+    for (Vec3& v : wing.vertices) v = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * v + Vec3(9, 10, 0);
     const Source s = shell_of(test::join(box_mesh({0, 0, 0}, {20, 10, 9}), wing));
     const double inside = area_within(s.mesh, {{0.01, 0.01, 0.01}, {19.99, 9.99, 8.99}});
     CHECK(inside < 0.5);  // of the wing's sides within the house
