@@ -125,6 +125,19 @@ TEST_CASE("an exact model of few planes gives nothing away on coarse layers") {
     CHECK(layer.validity.polygons == n + 2);
 }
 
+TEST_CASE("stacked boxes keep their ground floor, on every layer") {
+  for (const double over : {0.1, 0.3, 0.6})
+    for (const double height : {2.6, 3.2, 4.5}) {
+      Mesh m = test::box_mesh({0, 0, 0}, {14, 9, height});
+      m = test::join(m,
+                     test::box_mesh({-over, -over, height}, {14 + over, 9 + over, height + 0.3}));
+      m = test::join(m, test::box_mesh({5, 2, height + 0.3}, {9, 6, height + 2.6}));
+      const double volume = 126 * height + 0.3 * (14 + 2 * over) * (9 + 2 * over) + 16 * 2.3;
+      for (const Layer& layer : build({test::as_source(m)}).buildings[0].layers)
+        CHECK(layer.validity.volume == Approx(volume).epsilon(0.05));
+    }
+}
+
 TEST_CASE("the paper's rules run through the same rooms") {
   Options options = small_options();
   options.rules = Rules::kPaper;

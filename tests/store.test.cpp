@@ -32,9 +32,11 @@ Options small_options() {
   return o;
 }
 
+/// With a chimney, a bay and a step before its door.
 Source house(const std::string& name, double w) {
-  return test::as_source(
-      test::join(test::gable_house(w, 9, 6, 4), test::box_mesh({2, 3, 7}, {3, 4.2, 11})), name);
+  Mesh m = test::join(test::gable_house(w, 9, 6, 4), test::box_mesh({2, 3, 7}, {3, 4.2, 11}));
+  m = test::join(m, test::box_mesh({4, -0.8, 2}, {6.5, 0.1, 4.5}));
+  return test::as_source(test::join(m, test::box_mesh({1, -0.5, 0}, {2.2, 0.1, 0.35})), name);
 }
 
 }  // namespace
