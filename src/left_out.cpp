@@ -113,7 +113,9 @@ const char* to_string(LeftOut::Reason reason) {
 }
 
 bool is_loss(const LeftOut& l) {
-  return l.volume_share > kMostLostVolume && l.reason != LeftOut::Reason::kInside;
+  if (l.reason == LeftOut::Reason::kInside) return false;
+  return l.volume_share > kMostLostVolume ||
+         (l.reason == LeftOut::Reason::kLost && l.volume < 0 && l.share > kMostLostSurface);
 }
 
 double warning_weight(const LeftOut& l) {

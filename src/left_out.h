@@ -13,6 +13,8 @@ const char* to_string(LeftOut::Reason reason);
 /// Of the input's volume: a body that holds more and is gone is a building's failure. A storey, a
 /// wing and a house of a row hold more, a chimney and a dormer less.
 constexpr double kMostLostVolume = 0.02;
+/// Of the input's area, likewise, of open pieces: a roof or a facade holds more.
+constexpr double kMostLostSurface = 0.2;
 
 /// Whether a body is gone, for whatever reason.
 bool is_loss(const LeftOut& left_out);

@@ -21,6 +21,8 @@ constexpr double kDeep = 0.25;         // … or this share of the side of a cub
 constexpr double kFar = 0.5;           // of that depth: surface that lies so far off is far
 constexpr double kMostly = 0.5;        // of the surface about a body that is far
 constexpr double kNear = 1;            // voxels
+constexpr double kReach = 0.5, kReachShare = 0.02;  // metres, of the diagonal: no farther is near
+constexpr double kLeastMissed = 0.05;  // of the area: of 230 real inputs five miss more
 constexpr std::size_t kGrain = 256;
 
 /// Distance to the layer where it is more than `least`, 0 elsewhere.
@@ -65,27 +67,31 @@ std::vector<Body> connect(const VoxelGrid& g, const std::vector<double>& distanc
   return bodies;
 }
 
-/// The body about a point of the source's surface, if open space is beside it too; −1: none.
-int body_at(const VoxelGrid& g, const std::vector<char>& is_solid, const std::vector<int>& body_of,
-            const Vec3& p) {
+struct Beside {
+  int body = -1;  ///< −1: none
+  bool is_open = false;
+};
+
+/// What is about a point of the source's surface: a body, and open space, from where it is seen.
+Beside beside(const VoxelGrid& g, const std::vector<char>& is_solid,
+              const std::vector<int>& body_of, const Vec3& p) {
+  Beside found;
   const Vec3 at = (p - g.origin) / g.size;
-  if (!at.allFinite()) return -1;
+  if (!at.allFinite()) return found;
   const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y())),
             z = static_cast<int>(std::floor(at.z()));
-  int body = -1;
-  bool is_open = false;
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         if (!g.holds(x + dx, y + dy, z + dz)) {
-          is_open = true;
+          found.is_open = true;
           continue;
         }
         const std::size_t c = g.number(x + dx, y + dy, z + dz);
-        is_open |= !is_solid[c];
-        body = std::max(body, body_of[c]);
+        found.is_open |= !is_solid[c];
+        found.body = std::max(found.body, body_of[c]);
       }
-  return is_open ? body : -1;
+  return found;
 }
 
 Box used_box(const Mesh& m) {
@@ -116,8 +122,8 @@ double measure_surface(const Mesh& source, const VoxelGrid& grid, const std::vec
   for (const Face& f : source.faces)
     sample_face(source, f, grid.size, [&](const Vec3& p, double area) {
       total += area;
-      const int number = body_at(grid, is_solid, body_of, p);
-      if (number < 0) return;
+      const auto [number, is_open] = beside(grid, is_solid, body_of, p);
+      if (number < 0 || !is_open) return;
       Body& body = bodies[number];
       const double distance = layer.nearest(p).distance;
       const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
@@ -126,6 +132,43 @@ double measure_surface(const Mesh& source, const VoxelGrid& grid, const std::vec
       if (distance > kFar * body.required_depth(volume)) body.far_area += area;
     });
   return total;
+}
+
+/// What of the surface that is seen from outside is far from the layer, lost bodies apart: of open
+/// pieces there is no volume to miss.
+LeftOut find_missed(const Mesh& source, const VoxelGrid& grid, const std::vector<char>& is_solid,
+                    const std::vector<int>& body_of, const std::vector<char>& is_lost,
+                    const RayScene& layer) {
+  const double reach = std::max(kReach, kReachShare * used_box(source).diagonal());
+  struct Sums {
+    double all = 0, missed = 0, farthest = 0;
+  };
+  std::vector<Sums> of_face(source.faces.size());
+  parallel_for(
+      source.faces.size(),
+      [&](std::size_t i) {
+        Sums& sums = of_face[i];
+        sample_face(source, source.faces[i], grid.size, [&](const Vec3& p, double area) {
+          sums.all += area;
+          const auto [body, is_open] = beside(grid, is_solid, body_of, p);
+          if (!is_open || (body >= 0 && is_lost[body])) return;
+          const double distance = distance_beyond(layer, p, reach);
+          if (distance > 0) sums.missed += area;
+          sums.farthest = std::max(sums.farthest, distance);
+        });
+      },
+      kGrain);
+  Sums all;
+  for (const Sums& one : of_face) {
+    all.all += one.all, all.missed += one.missed;
+    all.farthest = std::max(all.farthest, one.farthest);
+  }
+  LeftOut out;
+  out.reason = LeftOut::Reason::kLost;
+  out.area = all.missed;
+  out.share = all.all > 0 ? all.missed / all.all : 0;
+  out.farthest = all.farthest;
+  return out;
 }
 
 }  // namespace
@@ -145,11 +188,14 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
   std::vector<Body> bodies =
       connect(grid, find_missing(grid, is_solid, is_inside, layer_scene), body_of);
   const double area = measure_surface(source, grid, is_solid, body_of, layer_scene, bodies);
-  for (const Body& body : bodies) {
+  std::vector<char> is_lost(bodies.size(), 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
     const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
     if (volume < kLeastShare * out.solid || body.depth < body.required_depth(volume) ||
         body.far_area <= kMostly * body.area)
       continue;
+    is_lost[i] = 1;
     out.lost.push_back({.reason = LeftOut::Reason::kLost,
                         .area = body.area,
                         .share = body.area / area,
@@ -159,6 +205,8 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
   }
   std::stable_sort(out.lost.begin(), out.lost.end(),
                    [](const LeftOut& a, const LeftOut& b) { return a.volume > b.volume; });
+  LeftOut missed = find_missed(source, grid, is_solid, body_of, is_lost, layer_scene);
+  if (missed.share > kLeastMissed) out.lost.push_back(missed);
   return out;
 }
 

@@ -33,6 +33,14 @@ std::string describe(const LeftOut& l) {
   char text[200];
   switch (l.reason) {
     case LeftOut::Reason::kLost:
+      if (l.volume < 0) {
+        std::snprintf(
+            text, sizeof text,
+            "%.3g m2, %s of the surface, is on no layer: up to %.1f m from the finest one; "
+            "is it one building? --split component meshes pieces one by one",
+            l.area, percent(l.share).c_str(), l.farthest);
+        return text;
+      }
       std::snprintf(
           text, sizeof text,
           "a body of %.3g m3, %s of the volume, is on no layer: %.3g m2 of surface, up to "
@@ -87,7 +95,7 @@ void weigh_finest(Building& b) {
   for (const LeftOut& l : b.left_out) of_input -= l.share;
   for (LeftOut l : holdings.lost) {
     l.share *= std::max(0.0, of_input);
-    l.volume_share = l.volume / whole;
+    if (l.volume >= 0) l.volume_share = l.volume / whole;
     b.left_out.push_back(l);
   }
 }

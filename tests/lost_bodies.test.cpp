@@ -103,3 +103,20 @@ TEST_CASE("no body is lost where a wall moved, a passage runs, or rooms and furn
            box_mesh({0, 0, 3.5}, {15, 10, 9}));
   CHECK(weigh_layer(passage, passage).lost.empty());
 }
+
+TEST_CASE("of open surface what is far from the layer is missed, of the inside nothing is") {
+  for (const double size : {0.8, 1.0, 6.0}) {
+    Mesh roofs;  // two roofs without walls, side by side
+    roofs.vertices = {{0, 0, 5},  {10, 0, 5}, {10, 8, 5}, {0, 8, 5},
+                      {14, 0, 5}, {24, 0, 5}, {24, 8, 5}, {14, 8, 5}};
+    roofs.faces = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    const Holdings h =
+        weigh_layer(scaled(roofs, size), scaled(box_mesh({0, 0, 0}, {10, 8, 5}), size));
+    REQUIRE(h.lost.size() == 1);
+    CHECK(h.lost[0].volume == -1);
+    CHECK(h.lost[0].share == Approx(0.5));
+    CHECK(h.lost[0].farthest == Approx(14 * size).epsilon(0.05));
+    const Mesh house = box_mesh({0, 0, 0}, {12, 9, 6}), room = box_mesh({3, 3, 2}, {9, 6, 4});
+    CHECK(weigh_layer(scaled(join(house, room), size), scaled(house, size)).lost.empty());
+  }
+}
