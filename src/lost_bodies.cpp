@@ -15,14 +15,14 @@
 namespace colod {
 namespace {
 
-constexpr double kLeastShare = 0.005;  // of the solid: what is smaller is detail
+constexpr double kLeastShare = 0.005;  // of the whole volume: what is smaller is detail
 constexpr double kRoom = 2;            // metres: the depth of a room, a body is as deep …
 constexpr double kDeep = 0.25;         // … or this share of the side of a cube of its volume
 constexpr double kFar = 0.5;           // of that depth: surface that lies so far off is far
 constexpr double kMostly = 0.5;        // of the surface about a body that is far
 constexpr double kNear = 1;            // voxels
 constexpr double kReach = 0.5, kReachShare = 0.02;  // metres, of the diagonal: no farther is near
-constexpr double kLeastMissed = 0.05;  // of the area: of 230 real inputs five miss more
+constexpr double kLeastMissed = 0.1;  // of the area: less is noise of outlines and clutter
 constexpr std::size_t kGrain = 256;
 
 /// Distance to the layer where it is more than `least`, 0 elsewhere.
@@ -183,7 +183,9 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
     solid += is_solid[i], kept += is_solid[i] && is_inside[i];
   Holdings out{.solid = static_cast<double>(solid) * grid.volume(),
                .kept = static_cast<double>(kept) * grid.volume(),
+               .whole = 0,
                .lost = {}};
+  out.whole = std::max(0.0, signed_volume(layer)) + out.solid - out.kept;
   std::vector<int> body_of;
   std::vector<Body> bodies =
       connect(grid, find_missing(grid, is_solid, is_inside, layer_scene), body_of);
@@ -192,7 +194,7 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
-    if (volume < kLeastShare * out.solid || body.depth < body.required_depth(volume) ||
+    if (volume < kLeastShare * out.whole || body.depth < body.required_depth(volume) ||
         body.far_area <= kMostly * body.area)
       continue;
     is_lost[i] = 1;
@@ -201,7 +203,7 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
                         .share = body.area / area,
                         .farthest = body.farthest,
                         .volume = volume,
-                        .volume_share = volume / out.solid});
+                        .volume_share = volume / out.whole});
   }
   std::stable_sort(out.lost.begin(), out.lost.end(),
                    [](const LeftOut& a, const LeftOut& b) { return a.volume > b.volume; });

@@ -22,10 +22,10 @@ namespace colod {
 
 /// Why a layer's mesh is the next finer layer's. Both keep the chain right for a viewer.
 enum class StandIn {
-  kNone,    ///< it is its own
-  kRicher,  ///< it had more vertices or faces than the finer one: harmless, the finer one is
-            ///< simpler and nearer to the source
-  kInvented,  ///< most of its surface was far from the source: a failure of the layer
+  kNone,      ///< it is its own
+  kRicher,    ///< it had more vertices or faces than the finer one: harmless, the finer one is
+              ///< simpler and nearer to the source
+  kInvented,  ///< most of its tops and many sides were far from the source: a failure
   kVolume  ///< it enclosed another volume, so it had lost a part of the building or gained one: a
            ///< failure of the layer
 };

@@ -71,9 +71,9 @@ const char* describe(StandIn reason) {
     case StandIn::kRicher:
       return "came out richer than the next finer one and takes its mesh";
     case StandIn::kInvented:
-      return "lay far from the source over most of its surface, so that the next finer layer's "
-             "mesh "
-             "stands in";
+      return "came out with most of its roofs and many walls far from the source: it stands "
+             "elsewhere, "
+             "so that the next finer layer's mesh stands in";
     case StandIn::kVolume:
       return "came out with another volume than the finer ones, by more than a fifth: it lost a "
              "part "
@@ -87,7 +87,7 @@ void weigh_finest(Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return;
   const Holdings holdings = weigh_layer(surface_of(b), b.layers.back().mesh.mesh());
   b.solid = holdings.solid;
-  double whole = holdings.solid;
+  double whole = holdings.whole;
   for (const LeftOut& l : b.left_out) whole += std::max(0.0, l.volume);
   for (LeftOut& l : b.left_out)
     if (l.volume >= 0 && whole > 0) l.volume_share = l.volume / whole;
@@ -106,10 +106,10 @@ void replace_invented(Building& b) {
   for (Layer& layer : b.layers)
     if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
   if (shown.empty()) return;
-  const std::vector<double> shares = invented_shares(surface_of(b), meshes);
+  const std::vector<InventedShare> shares = invented_shares(surface_of(b), meshes);
   for (std::size_t i = shown.size(); i-- > 0;) {
-    shown[i]->invented = shares[i];
-    if (shares[i] <= kMostInvented || i + 1 == shown.size()) continue;
+    shown[i]->invented = shares[i].share;
+    if (!shares[i].is_too_much || i + 1 == shown.size()) continue;
     shown[i]->mesh = shown[i + 1]->mesh;
     shown[i]->invented = shown[i + 1]->invented;
     shown[i]->stand_in = StandIn::kInvented;

@@ -95,6 +95,8 @@ Invention measure_invention(const RayScene& source, double reach, const Mesh& la
   return all;
 }
 
+bool is_invented(double tops, double sides) { return tops > kFalseTops && sides > kFalseSides; }
+
 double reach_of(const Mesh& source) {
   return std::max(kReach, kReachShare * bounding_box(source.vertices).diagonal());
 }
@@ -147,11 +149,13 @@ SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double so
   return facts;
 }
 
-std::vector<double> invented_shares(const Mesh& source, const std::vector<Mesh>& layers) {
+std::vector<InventedShare> invented_shares(const Mesh& source, const std::vector<Mesh>& layers) {
   const RayScene scene(source);
-  std::vector<double> shares;
-  for (const Mesh& layer : layers)
-    shares.push_back(measure_invention(scene, reach_of(source), layer).share());
+  std::vector<InventedShare> shares;
+  for (const Mesh& layer : layers) {
+    const Invention invention = measure_invention(scene, reach_of(source), layer);
+    shares.push_back({invention.share(), is_invented(invention.share(0), invention.share(1))});
+  }
   return shares;
 }
 
@@ -175,17 +179,11 @@ std::string judge_scene(const SceneFacts& f) {
                   100 * f.upright, f.thickness);
     return text;
   }
-  if (f.invented_tops > kFalseTops && f.invented_sides > kFalseSides) {
+  if (is_invented(f.invented_tops, f.invented_sides)) {
     std::snprintf(text, sizeof text,
                   "%.0f %% of the roofs and %.0f %% of the walls that would close it are invented, "
                   "more than %.1f m from any of its surface",
                   100 * f.invented_tops, 100 * f.invented_sides, f.reach);
-    return text;
-  }
-  if (f.invented > kMostInvented) {
-    std::snprintf(text, sizeof text,
-                  "%.0f %% of the surface is more than %.1f m from any of its own",
-                  100 * f.invented, f.reach);
     return text;
   }
   return "";

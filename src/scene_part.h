@@ -30,12 +30,16 @@ struct SceneFacts {
 /// `solid`: m³ that the source encloses (lost_bodies.h). In parallel.
 SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double solid);
 
-/// Of a layer's surface: more that is invented is a failure. Airborne clouds with walls down to the
-/// ground have up to 0.76 (72 of them), scans and models 0.01 to 0.25.
-constexpr double kMostInvented = 0.85;
+/// How much of a layer is invented.
+struct InventedShare {
+  double share = 0;          ///< of all of its surface: 0.79 on an airborne cloud of a house, and
+                             ///< more on one of a tower, which is right
+  bool is_too_much = false;  ///< over half of the tops and 30 % of the sides: the layer stands
+                             ///< elsewhere than its source
+};
 
-/// `invented` of each layer, which is farther from the source than its coarseness explains.
-std::vector<double> invented_shares(const Mesh& source, const std::vector<Mesh>& layers);
+/// Of each layer, in parallel.
+std::vector<InventedShare> invented_shares(const Mesh& source, const std::vector<Mesh>& layers);
 
 /// Why it looks like a part of a scene, as a clause; empty: it does not.
 ///   terrain: nothing upright, many planar pieces that meet gently, in valleys as often as in
