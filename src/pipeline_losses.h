@@ -7,7 +7,7 @@ namespace colod {
 
 /// Adds to `left_out` the bodies of the source that the finest layer does not stand for, and the
 /// shares of the volume; sets `solid`. The finest layer is still in the building's frame. A cloud's
-/// surface is that of its planes' outlines.
+/// surface is that of its planes' outlines, steep ones apart.
 void weigh_finest(Building& building);
 
 /// Measures how much of each layer is invented; where it is too much (scene_part.h) the next finer

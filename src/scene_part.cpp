@@ -38,16 +38,21 @@ constexpr double kRadian_deg = 57.29577951308232;
 
 /// Length of the edges that faces use more often one way than the other.
 double border_length(const Mesh& mesh) {
-  std::map<std::pair<int, int>, int> balance;
+  std::vector<std::array<int, 3>> uses;  // of an edge: its ends, rising, and which way it is used
+  uses.reserve(3 * mesh.faces.size());
   for (const Face& f : mesh.faces)
     for (int k = 0; k < 3; ++k) {
       const int a = f[k], b = f[(k + 1) % 3];
-      balance[std::minmax(a, b)] += a < b ? 1 : -1;
+      uses.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
     }
+  std::sort(uses.begin(), uses.end());
   double length = 0;
-  for (const auto& [edge, uses] : balance) {
-    const double one = (mesh.vertices[edge.first] - mesh.vertices[edge.second]).norm();
-    if (uses != 0 && std::isfinite(one)) length += one;
+  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+    int balance = 0;
+    for (; end < uses.size() && uses[end][0] == uses[i][0] && uses[end][1] == uses[i][1]; ++end)
+      balance += uses[end][2];
+    const double one = (mesh.vertices[uses[i][0]] - mesh.vertices[uses[i][1]]).norm();
+    if (balance != 0 && std::isfinite(one)) length += one;
   }
   return length;
 }
@@ -140,6 +145,7 @@ SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double so
   facts.extent = std::sqrt(area);
   facts.thickness = area > 0 ? 2 * volume / area : 0;
   survey_source(source, facts);
+  if (!facts.is_open) return facts;
   facts.reach = reach_of(source);
   const Invention invention = measure_invention(RayScene(source), facts.reach, layer);
   facts.invented = invention.share();

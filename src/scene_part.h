@@ -27,7 +27,8 @@ struct SceneFacts {
 };
 
 /// `source`: the surface of the input, a cloud's as outlines of its planes. `finest` is closed.
-/// `solid`: m³ that the source encloses (lost_bodies.h). In parallel.
+/// `solid`: m³ that the source encloses (lost_bodies.h). Of a closed source nothing else is
+/// measured. In parallel.
 SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double solid);
 
 /// How much of a layer is invented.
