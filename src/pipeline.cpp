@@ -326,6 +326,7 @@ void mesh_building(Building& b, const Options& options) {
     if (!is_paper(options)) b.failure = judge_building(b);
     if (!b.failure.empty()) {
       b.layers.clear();
+      forget_losses(b);
       return;
     }
     replace_invented(b);

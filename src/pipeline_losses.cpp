@@ -96,8 +96,12 @@ const char* describe(StandIn reason) {
   return "";
 }
 
-void weigh_finest(Building& b) {
+void forget_losses(Building& b) {
   std::erase_if(b.left_out, [](const LeftOut& l) { return l.reason == LeftOut::Reason::kLost; });
+}
+
+void weigh_finest(Building& b) {
+  forget_losses(b);
   if (b.layers.empty() || !b.layers.back().failure.empty()) return;
   const Holdings holdings = weigh_layer(surface_to_keep(b), b.layers.back().mesh.mesh());
   b.solid = holdings.solid;

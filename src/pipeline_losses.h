@@ -10,6 +10,9 @@ namespace colod {
 /// surface is that of its planes' outlines, steep ones apart.
 void weigh_finest(Building& building);
 
+/// Of a building that failed as a whole nothing more is lost.
+void forget_losses(Building& building);
+
 /// Measures how much of each layer is invented; where it is too much (scene_part.h) the next finer
 /// layer's mesh stands in.
 void replace_invented(Building& building);
