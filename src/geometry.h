@@ -45,13 +45,20 @@ struct PointCloud {
   std::vector<Vec3> normals;
 };
 
-/// What a room parted from a building's source.
+/// What of a building's source no layer stands for.
 struct LeftOut {
-  enum class Reason { kGround, kFloater, kInside };
+  enum class Reason {
+    kGround,   ///< terrain, and what stands about on it
+    kFloater,  ///< pieces afloat, also far away
+    kInside,   ///< what nobody sees from outside
+    kLost      ///< a body of the building that no layer stands for: a failure
+  };
   Reason reason = Reason::kFloater;
-  double area = 0;      ///< m²; 0 for points
-  double share = 0;     ///< 0..1 of the input's area, or of its points
-  double farthest = 0;  ///< metres, of its vertices from what was kept
+  double area = 0;           ///< m²; 0 for points
+  double share = 0;          ///< 0..1 of the input's area, or of its points
+  double farthest = 0;       ///< metres, of its surface from what was kept
+  double volume = -1;        ///< m³ that it encloses; −1: it is open
+  double volume_share = -1;  ///< 0..1 of the volume of the input; −1: unknown
 };
 
 /// One building as it was read. Exactly one of `mesh` and `cloud` is non-empty.

@@ -4,14 +4,19 @@
 #include "left_out.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "parallel.h"
 #include "rays.h"
+#include "union_find.h"
 
 namespace colod {
 namespace {
 
 constexpr std::size_t kGrain = 256;  // queries a task takes
+constexpr double kMuchGround = 0.5, kMuchAfloat = 0.02;
 
 /// Largest distance of the points to the scene. Neighbours in the list are mostly neighbours in
 /// space, so that each tells how far the next one can be.
@@ -25,6 +30,33 @@ double farthest_from(const std::vector<Vec3>& points, const RayScene& scene) {
     }
   });
   return distance.empty() ? 0 : *std::max_element(distance.begin(), distance.end());
+}
+
+/// m³ that the closed ones of the flagged pieces enclose; −1: none is closed.
+double closed_volume(const Mesh& mesh, const std::vector<char>& is_left_out) {
+  UnionFind pieces(mesh.vertices.size());
+  std::map<std::pair<int, int>, int> balance;  // of an edge: uses one way less those the other way
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    if (!is_left_out[i]) continue;
+    const Face& f = mesh.faces[i];
+    for (int k = 0; k < 3; ++k) {
+      const int a = f[k], b = f[(k + 1) % 3];
+      pieces.unite(a, b);
+      balance[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  }
+  std::vector<char> is_open(mesh.vertices.size(), 0);
+  for (const auto& [edge, uses] : balance)
+    if (uses != 0) is_open[pieces.find(edge.first)] = 1;
+  std::map<int, double> closed;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const auto& [a, b, c] = mesh.faces[i];
+    if (const int piece = pieces.find(a); is_left_out[i] && !is_open[piece])
+      closed[piece] += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c])) / 6;
+  }
+  double volume = closed.empty() ? -1 : 0;
+  for (const auto& [piece, signed_one] : closed) volume += std::abs(signed_one);
+  return volume;
 }
 
 LeftOut measure_faces(const Mesh& mesh, const std::vector<char>& is_left_out) {
@@ -74,8 +106,44 @@ const char* to_string(LeftOut::Reason reason) {
       return "floater";
     case LeftOut::Reason::kInside:
       return "inside";
+    case LeftOut::Reason::kLost:
+      return "lost";
   }
   return "";
+}
+
+bool is_loss(const LeftOut& l) {
+  if (l.reason == LeftOut::Reason::kInside) return false;
+  return l.volume_share > kMostLostVolume ||
+         (l.reason == LeftOut::Reason::kLost && l.volume < 0 && l.share > kMostLostSurface);
+}
+
+double warning_weight(const LeftOut& l) {
+  const double share = std::max(l.share, l.volume_share);
+  switch (l.reason) {
+    case LeftOut::Reason::kGround:
+      return l.share > kMuchGround ? l.share : 0;
+    case LeftOut::Reason::kFloater:
+      return share > kMuchAfloat ? share : 0;
+    case LeftOut::Reason::kInside:
+      return 0;
+    case LeftOut::Reason::kLost:
+      return share;
+  }
+  return 0;
+}
+
+LeftOut total_of(const std::vector<LeftOut>& parts) {
+  LeftOut total;
+  for (const LeftOut& l : parts) {
+    total.area += l.area;
+    total.share += l.share;
+    total.farthest = std::max(total.farthest, l.farthest);
+    if (l.volume >= 0) total.volume = std::max(total.volume, 0.0) + l.volume;
+    if (l.volume_share >= 0)
+      total.volume_share = std::max(total.volume_share, 0.0) + l.volume_share;
+  }
+  return total;
 }
 
 LeftOut measure_left_out(const Source& source, const std::vector<char>& is_left_out,
@@ -83,6 +151,8 @@ LeftOut measure_left_out(const Source& source, const std::vector<char>& is_left_
   LeftOut out = source.is_mesh() ? measure_faces(source.mesh, is_left_out)
                                  : measure_points(source.cloud.points, is_left_out);
   out.reason = reason;
+  if (source.is_mesh() && reason == LeftOut::Reason::kFloater)
+    out.volume = closed_volume(source.mesh, is_left_out);
   for (const LeftOut& b : before) out.share *= 1 - b.share;
   return out;
 }

@@ -14,6 +14,7 @@
 #include "hidden.h"
 #include "left_out.h"
 #include "parallel.h"
+#include "pipeline_losses.h"
 #include "stopwatch.h"
 
 namespace colod {
@@ -100,12 +101,13 @@ bool is_richer(const PolygonMesh& a, const PolygonMesh& b) {
          a.facets.size() > b.facets.size();
 }
 
-/// Why a coarser layer cannot stand before a finer one; empty: it can.
-std::string misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volume_checked) {
-  if (is_richer(coarse, fine)) return "is richer than";
+/// Why a coarser layer cannot stand before a finer one. The volume is asked first: what lost a wing
+/// may be richer as well.
+StandIn misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volume_checked) {
   const double volume = signed_volume(fine.mesh());
   const double change = std::abs(signed_volume(coarse.mesh()) - volume);
-  return is_volume_checked && change > kVolumeChange * volume ? "has another volume than" : "";
+  if (is_volume_checked && change > kVolumeChange * volume) return StandIn::kVolume;
+  return is_richer(coarse, fine) ? StandIn::kRicher : StandIn::kNone;
 }
 
 /// Detail rises along the chain, and (robust) all layers enclose about the same building.
@@ -113,12 +115,12 @@ void keep_chain_sound(Building& b, const Options& o) {
   for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
     Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
     if (!coarse.failure.empty() || !fine.failure.empty()) continue;
-    std::string why = misfit(coarse.mesh, fine.mesh, !is_paper(o));
-    if (why.empty() && b.layers.back().failure.empty())  // many small changes are a large one
-      why = misfit(coarse.mesh, b.layers.back().mesh, !is_paper(o));
-    if (why.empty()) continue;
-    b.warnings.push_back("layer " + std::to_string(k) + " " + why +
-                         " the next finer one and takes its mesh");
+    coarse.stand_in = misfit(coarse.mesh, fine.mesh, !is_paper(o));
+    if (coarse.stand_in == StandIn::kNone && b.layers.back().failure.empty())
+      coarse.stand_in = misfit(coarse.mesh, b.layers.back().mesh, !is_paper(o));  // changes add up
+    if (coarse.stand_in == StandIn::kNone) continue;
+    if (coarse.stand_in == StandIn::kRicher)
+      b.warnings.push_back("layer " + std::to_string(k) + " " + describe(coarse.stand_in));
     coarse.mesh = fine.mesh;
   }
 }
@@ -195,6 +197,30 @@ std::vector<std::vector<std::size_t>> positions_by_name(const Inventory& invento
 }
 
 }  // namespace
+
+const char* to_string(StandIn reason) {
+  switch (reason) {
+    case StandIn::kNone:
+      return "";
+    case StandIn::kRicher:
+      return "richer";
+    case StandIn::kInvented:
+      return "invented";
+    case StandIn::kVolume:
+      return "volume";
+  }
+  return "";
+}
+
+bool is_failure(StandIn reason) {
+  return reason == StandIn::kInvented || reason == StandIn::kVolume;
+}
+
+bool Building::has_lost() const {
+  return std::any_of(left_out.begin(), left_out.end(), is_loss) ||
+         std::any_of(layers.begin(), layers.end(),
+                     [](const Layer& l) { return is_failure(l.stand_in); });
+}
 
 bool Building::has_failed() const {
   return !failure.empty() || std::any_of(layers.begin(), layers.end(),
@@ -297,6 +323,14 @@ void mesh_building(Building& b, const Options& options) {
     }
     keep_chain_sound(b, options);
     Stopwatch watch(b.timings.measure);
+    weigh_finest(b);
+    if (!is_paper(options)) b.failure = judge_building(b);
+    if (!b.failure.empty()) {
+      b.layers.clear();
+      forget_losses(b);
+      return;
+    }
+    replace_invented(b);
     const DistanceGauge source(b.source, {}, floaters(b.planes));
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, layer);

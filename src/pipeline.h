@@ -20,6 +20,21 @@
 
 namespace colod {
 
+/// Why a layer's mesh is the next finer layer's. Both keep the chain right for a viewer.
+enum class StandIn {
+  kNone,      ///< it is its own
+  kRicher,    ///< it had more vertices or faces than the finer one: harmless, the finer one is
+              ///< simpler and nearer to the source
+  kInvented,  ///< most of its tops and many sides were far from the source: a failure
+  kVolume  ///< it enclosed another volume, so it had lost a part of the building or gained one: a
+           ///< failure of the layer
+};
+
+/// As in report.json: "richer", "invented", "volume"; empty for kNone.
+const char* to_string(StandIn reason);
+/// Whether it hides that the layer went wrong.
+bool is_failure(StandIn reason);
+
 /// One layer of one building with its measures.
 struct Layer {
   int layer = 0;        ///< 0 = coarsest
@@ -32,6 +47,8 @@ struct Layer {
   double gsd = 0;      ///< … and where it does (set by decide_switches)
   std::size_t bytes = 0;  ///< of its mesh as the building's GLB packs it; 0: none written
   std::string failure;    ///< why there is no mesh; empty: there is one
+  StandIn stand_in = StandIn::kNone;
+  double invented = -1;  ///< 0..1 of its surface far from the source (scene_part.h); −1: unknown
 };
 
 /// Seconds of wall clock per stage; buildings overlap when several threads run.
@@ -59,10 +76,14 @@ struct Building {
   std::vector<Layer> layers;            ///< l_n of them unless the building failed
   Timings timings;
   std::vector<LeftOut> left_out;  ///< of the source, and why
+  double solid = -1;              ///< m³ that the source encloses (solid.h); −1: not measured
   std::vector<std::string> warnings;
   std::string failure;  ///< why the building has no layer at all; empty: it has
 
   bool has_failed() const;
+  /// Whether a body of it is gone, or a layer is another's for a failure: there is a mesh, but not
+  /// all is well.
+  bool has_lost() const;
 };
 
 /// When layers switch, and how that was decided.

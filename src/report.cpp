@@ -8,6 +8,7 @@
 
 #include "../exporters/exporter.h"
 #include "left_out.h"
+#include "pipeline_losses.h"
 
 namespace colod {
 namespace {
@@ -27,6 +28,9 @@ Json parameters_json(const Options& options) {
   }
   return json;
 }
+
+/// A measure that may be unknown, which is negative inside the program and null in the report.
+Json known(double value) { return value < 0 ? Json() : Json(value); }
 
 Json layer_json(const Layer& layer) {
   Json json{{"layer", layer.layer}, {"segments", layer.segments}};
@@ -52,9 +56,23 @@ Json layer_json(const Layer& layer) {
   json["deviation"] = layer.sight.deviation;
   json["gsd"] = layer.gsd;
   json["own_gsd"] = layer.own_gsd;
+  json["invented"] = known(layer.invented);
   json["like_finer"] = layer.sight.is_like_finer;
+  if (layer.stand_in != StandIn::kNone)
+    json["stand_in"] = {{"reason", to_string(layer.stand_in)},
+                        {"failure", is_failure(layer.stand_in)},
+                        {"message", describe(layer.stand_in)}};
   if (layer.bytes > 0) json["bytes"] = layer.bytes;
   return json;
+}
+
+Json left_out_json(const LeftOut& l) {
+  return {{"reason", to_string(l.reason)},
+          {"area", l.area},
+          {"share", l.share},
+          {"volume", known(l.volume)},
+          {"volume_share", known(l.volume_share)},
+          {"farthest", l.farthest}};
 }
 
 Json building_json(const Building& b, bool has_prior) {
@@ -68,12 +86,11 @@ Json building_json(const Building& b, bool has_prior) {
             {"prior", has_prior},
             {"diagonal", b.counts.diagonal},
             {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+  json["solid_volume"] = known(b.solid);
   json["left_out"] = Json::array();
-  for (const LeftOut& l : b.left_out)
-    json["left_out"].push_back({{"reason", to_string(l.reason)},
-                                {"area", l.area},
-                                {"share", l.share},
-                                {"farthest", l.farthest}});
+  for (const LeftOut& l : b.left_out) json["left_out"].push_back(left_out_json(l));
+  json["left_out_total"] = left_out_json(total_of(b.left_out));
+  json["left_out_total"].erase("reason");
   json["layers"] = Json::array();
   for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
   json["timings"] = {{"read", b.timings.read},
@@ -85,7 +102,11 @@ Json building_json(const Building& b, bool has_prior) {
                      {"measure", b.timings.measure},
                      {"pictures", b.timings.pictures},
                      {"export", b.timings.export_}};
-  json["warnings"] = b.warnings;
+  std::vector<std::string> warnings = loss_warnings(b);
+  json["heavy_warnings"] = warnings.size();
+  warnings.insert(warnings.end(), b.warnings.begin(), b.warnings.end());
+  json["warnings"] = warnings;
+  json["lost"] = b.has_lost();
   if (!b.failure.empty()) json["failure"] = b.failure;
   return json;
 }
@@ -134,6 +155,21 @@ Json coanalysis_json(const Scene& scene) {
           {"warnings", warnings}};
 }
 
+/// How much is amiss, over all buildings.
+void count_losses(const Scene& scene, Json& totals) {
+  std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0;
+  for (const Building& b : scene.buildings) {
+    failed += !b.failure.empty();
+    for (const LeftOut& l : b.left_out) bodies += is_loss(l);
+    for (const Layer& layer : b.layers)
+      layers += !layer.failure.empty(), stand_ins += is_failure(layer.stand_in);
+  }
+  totals["failed_buildings"] = failed;
+  totals["failed_layers"] = layers;
+  totals["stand_in_layers"] = stand_ins;
+  totals["lost_bodies"] = bodies;
+}
+
 }  // namespace
 
 std::uint64_t peak_memory_bytes() {
@@ -156,6 +192,7 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
       {"peak_memory_bytes", totals.peak_memory_bytes},
       {"rays", rays},
       {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
+  count_losses(scene, json["totals"]);
   json["coanalysis"] = coanalysis_json(scene);
   json["switching"] = switching_json(scene.switching);
   if (!scene.consistency.empty())

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 6;  // PRAGMA user_version
+constexpr int kFormat = 7;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -24,7 +24,7 @@ CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
   rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL,
-  given_name TEXT NOT NULL);
+  given_name TEXT NOT NULL, solid REAL);
 CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
@@ -36,7 +36,7 @@ CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE
   segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
   segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
-  facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, PRIMARY KEY(building, layer)) WITHOUT ROWID;
+  facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
 )sql";
 
 Json options_json(const Options& o) {
@@ -231,11 +231,7 @@ void Store::put_meshes(const Building& b) {
   impl_->transaction([&] {
     impl_->write("DELETE FROM layer WHERE building = ?1").bind(b.source.name).run();
     for (const Layer& layer : b.layers) impl_->put_layer(b, layer);
-    impl_->write("UPDATE building SET failure = ?1, warnings = ?2 WHERE name = ?3")
-        .bind(b.failure)
-        .bind(Json(b.warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
-        .bind(b.source.name)
-        .run();
+    impl_->put_outcome(b);
   });
 }
 

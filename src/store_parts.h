@@ -119,6 +119,7 @@ struct Store::Impl {
   void put_planes(const Building& b) const;
   void put_segments(const Building& b) const;
   void put_layer(const Building& b, const Layer& layer) const;
+  void put_outcome(const Building& b) const;  ///< what its meshing changed of the building itself
   void get_building(Building& b) const;
   void get_planes(Building& b) const;
   void get_segments(Building& b) const;

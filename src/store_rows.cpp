@@ -17,7 +17,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Validity, vertices, faces, polyg
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spread, mean, p95, p99, max)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Distances, a_to_b, b_to_a, relative, mean_a_to_b, mean_b_to_a,
                                    rms_a_to_b, rms_b_to_a, taken)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOut, reason, area, share, farthest)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(LeftOut, reason, area, share, farthest, volume,
+                                                volume_share)
 
 namespace {
 
@@ -28,6 +29,12 @@ Form form_of(std::int64_t stored) {
        {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kSpire, Form::kRecess})
     if (stored == static_cast<int>(form)) return form;
   return Form::kPlain;
+}
+
+StandIn stand_in_of(std::int64_t stored) {
+  for (const StandIn reason : {StandIn::kRicher, StandIn::kInvented, StandIn::kVolume})
+    if (stored == static_cast<int>(reason)) return reason;
+  return StandIn::kNone;
 }
 
 /// Rings as one flat array: length, indices, length, indices…
@@ -117,7 +124,7 @@ LayerSight read_sight(Statement& s) {
 void Store::Impl::put_building(const Building& b, int order, const std::string& key) const {
   const std::vector<Vec3> box{b.planes.box.min, b.planes.box.max};
   std::vector<std::string> own_warnings = b.warnings;
-  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(order)
       .bind(key)
@@ -139,6 +146,7 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(Json(own_warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
       .bind(Json(b.left_out).dump())
       .bind(b.source.given_name)
+      .bind(b.solid)
       .run();
 }
 
@@ -198,7 +206,7 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
     facets.push_back({f.normal, f.plane, static_cast<std::int32_t>(f.rings.size())});
     rings.insert(rings.end(), f.rings.begin(), f.rings.end());
   }
-  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(layer.layer)
       .bind(layer.segments)
@@ -213,13 +221,27 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
       .bind(flatten(rings))
       .bind(layer.mesh.triangles)
       .bind(layer.mesh.facet_of_triangle)
+      .bind(static_cast<int>(layer.stand_in))
+      .bind(layer.invented)
+      .run();
+}
+
+void Store::Impl::put_outcome(const Building& b) const {
+  write(
+      "UPDATE building SET failure = ?1, warnings = ?2, left_out = ?3, solid = ?4 WHERE name = ?5")
+      .bind(b.failure)
+      .bind(Json(b.warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
+      .bind(Json(b.left_out).dump())
+      .bind(b.solid)
+      .bind(b.source.name)
       .run();
 }
 
 void Store::Impl::get_building(Building& b) const {
   Statement s = read(
       "SELECT path, origin_x, origin_y, origin_z, yaw, planes_distance, total_area, box, vertices, "
-      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out, given_name "
+      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out, given_name, "
+      "solid "
       "FROM building "
       "WHERE name = "
       "?1");
@@ -244,6 +266,7 @@ void Store::Impl::get_building(Building& b) const {
   read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
   read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
   b.source.given_name = s.text();
+  b.solid = s.real();
   check_place(b.source.mesh.vertices, path);
   check_place(b.source.cloud.points, path);
   if (!b.planes.box.is_empty()) check_place({&b.planes.box.max, 1}, path);
@@ -319,7 +342,9 @@ void Store::Impl::get_layers(Building& b) const {
   Statement s = read(
       "SELECT layer, segments, is_like_finer, deviation, profile, failure, validity, distances, "
       "vertices, facets, "
-      "rings, triangles, facet_of_triangle FROM layer WHERE building = ?1 ORDER BY layer");
+      "rings, triangles, facet_of_triangle, stand_in, invented FROM layer WHERE building = ?1 "
+      "ORDER BY "
+      "layer");
   s.bind(b.source.name);
   while (s.step()) {
     Layer layer;
@@ -345,6 +370,8 @@ void Store::Impl::get_layers(Building& b) const {
     }
     layer.mesh.triangles = s.array<Face>();
     layer.mesh.facet_of_triangle = s.array<int>();
+    layer.stand_in = stand_in_of(s.integer());
+    layer.invented = s.real();
     check_place(layer.mesh.vertices, path);
     check_range(layer.mesh, path);
     b.layers.push_back(std::move(layer));

@@ -1,7 +1,7 @@
 // Overview, problems, the sortable table and the pictures.
 
 function showOverview() {
-  const failed = buildings.filter((b) => b.isFailed).length + report.failures.length;
+  const failed = buildings.filter((b) => b.isFailed || b.lost).length + report.failures.length;
   const total = buildings.length + report.failures.length;
   const made = buildings.flatMap((b) => b.own.filter((l) => l && !l.failure));
   const closed = made.filter((l) => l.watertight).length;
@@ -13,7 +13,7 @@ function showOverview() {
     make('b', { class: state }, value), make('small', {}, note));
   const units = new Set(buildings.map((b) => b.unit));
   section('overview').append(
-    figure('Buildings', whole(total), failed ? `${whole(failed)} failed` : 'all complete', failed ? 'bad' : undefined),
+    figure('Buildings', whole(total), failed ? `${whole(failed)} failed or lost a part` : 'all complete', failed ? 'bad' : undefined),
     figure(units.size > 1 ? 'Source faces or points' : `Source ${[...units][0] ?? 'faces'}`, large(source),
       `${whole(report.coanalysis.segments)} segments of ${whole(sum(buildings.map((b) => b.planes)))} planes`),
     figure('Faces of the finest layer', large(fine), `${percent(source ? fine / source : undefined, 1)} of the source; coarsest ${large(coarse)}`),
@@ -22,22 +22,31 @@ function showOverview() {
     figure('Run', seconds(report.totals.seconds), `${bytes(report.totals.peak_memory_bytes)} of memory at most`));
 }
 
+/** The largest share of a building's area or volume that is left out for one reason. */
+const weightOf = (b) => Math.max(0, ...b.left_out.map((l) => Math.max(l.share, l.volume_share ?? 0)));
+
 function showProblems() {
   const failures = [
     ...report.failures.map((f) => [f.source, f.message]),
     ...buildings.filter((b) => b.failure).map((b) => [b.name, b.failure]),
     ...buildings.flatMap((b) => b.own.filter((l) => l?.failure).map((l) => [`${b.name}, layer ${l.layer}`, l.failure]))];
+  const losses = buildings.flatMap((b) => b.warnings.slice(0, b.heavy_warnings).map((w) => [b, w]))
+    .sort(([a], [b]) => weightOf(b) - weightOf(a)).map(([b, w]) => [b.name, w]);
+  const standIns = buildings.flatMap((b) => b.own.filter((l) => l?.stand_in?.failure).map((l) => [`${b.name}, layer ${l.layer}`, l.stand_in.message]));
   const warnings = [...report.coanalysis.warnings.map((w) => ['Co-analysis', w]),
     ...report.switching.warnings.map((w) => ['Switching', w]),
-    ...buildings.flatMap((b) => b.warnings.map((w) => [b.name, w]))];
+    ...buildings.flatMap((b) => b.warnings.slice(b.heavy_warnings).map((w) => [b.name, w]))];
   const list = (items) => make('ul', {}, ...items.map(([name, text]) =>
     make('li', {}, make('b', {}, name), text.startsWith(`${name}: `) ? text.slice(name.length) : `: ${text}`)));
   const box = section('problems');
-  if (failures.length) {
+  const openly = (items, title) => {
+    if (!items.length) return;
     box.classList.add('has-failures');
-    box.append(make('h2', { class: 'bad' }, count(failures.length, 'failure')), list(failures.slice(0, 200)));
-    if (failures.length > 200) box.append(make('p', {}, `and ${failures.length - 200} more: see report.json`));
-  }
+    box.append(make('h2', { class: 'bad' }, title), list(items.slice(0, 200)));
+    if (items.length > 200) box.append(make('p', {}, `and ${items.length - 200} more: see report.json`));
+  };
+  openly(failures, count(failures.length, 'failure'));
+  openly([...losses, ...standIns], `${count(losses.length + standIns.length, 'loss', 'losses')}: what is left out or stands for another layer`);
   if (warnings.length) box.append(make('details', {}, make('summary', {}, count(warnings.length, 'warning')), list(warnings.slice(0, 500))));
 }
 
@@ -55,7 +64,7 @@ function columns() {
     { title: 'Source faces', key: (b) => b.size, cell: (b) => `${whole(b.size)}${b.faces ? '' : ' pts'}` },
     { title: 'Planes', key: (b) => b.planes, cell: (b) => whole(b.planes) },
     { title: 'Seg\u00adments', key: (b) => b.segments, cell: (b) => whole(b.segments) },
-    { title: 'Left out', help: 'share of the source that was taken for ground or for pieces afloat', key: (b) => sum(b.left_out.map((l) => l.share)),
+    { title: 'Left out', help: 'share of the source that is ground, afloat, inside or lost', key: (b) => sum(b.left_out.map((l) => l.share)),
       cell: (b) => (b.left_out.length ? shareText(sum(b.left_out.map((l) => l.share))) : none) },
     { title: 'Warn\u00adings', key: (b) => b.warnings.length, cell: (b) => (b.warnings.length ? make('span', { class: 'warn' }, whole(b.warnings.length)) : '0') }];
   const ofLayer = (title, value, write, help) => (k) => ({ title, help, layer: k,
@@ -77,7 +86,7 @@ function compareKeys(a, b, direction) {
   return direction * (typeof a === 'string' ? names.compare(a, b) : a - b);
 }
 
-const filters = { all: () => true, failed: (b) => b.isFailed, warned: (b) => b.warnings.length > 0, open: (b) => b.isOpen };
+const filters = { all: () => true, failed: (b) => b.isFailed || b.lost, warned: (b) => b.warnings.length > 0, open: (b) => b.isOpen };
 const mostRows = 1000;
 
 /** Calls `follow` with the buildings that pass the filter, in the table's order, and with how many of them are shown. */
@@ -91,7 +100,7 @@ function showTable(follow) {
   let sorted = 0, direction = 1, limit = mostRows;
   const search = make('input', { type: 'search', placeholder: 'Filter by name', 'aria-label': 'Filter by name', oninput: () => update() });
   const filter = make('select', { 'aria-label': 'Which buildings', onchange: () => update() },
-    ...[['all', 'All buildings'], ['failed', 'Failed'], ['warned', 'With warnings'], ['open', 'Not watertight']]
+    ...[['all', 'All buildings'], ['failed', 'Failed or lost'], ['warned', 'With warnings'], ['open', 'Not watertight']]
       .map(([value, text]) => make('option', { value }, `${text} (${whole(buildings.filter(filters[value]).length)})`)));
   const more = make('button', { type: 'button', class: 'plain', hidden: true, onclick: () => { limit = Infinity; update(); } }, 'Show all');
   const shown = make('span', { class: 'soft' });
@@ -118,9 +127,11 @@ function showTable(follow) {
   update();
 }
 
+const badgeOf = (b) => (b.isFailed || b.lost ? [' ', make('span', { class: 'badge bad' }, b.isFailed ? 'failed' : 'lost a part')] : []);
+
 function rowOf(b, all) {
   const cells = all.slice(1).map((column) => [column, column.cell(b)]);
-  const row = make('tr', { class: b.isFailed ? 'failed' : undefined }, make('th', { scope: 'row' }, all[0].cell(b), b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed')));
+  const row = make('tr', { class: b.isFailed ? 'failed' : undefined }, make('th', { scope: 'row' }, all[0].cell(b), ...badgeOf(b)));
   if (b.failure) {  // the reason stands where the layers would
     row.append(...cells.filter(([c]) => c.layer === undefined).map(([, content]) => make('td', {}, content)),
       make('td', { class: 'why first', colspan: columnsOfLayer * layerCount }, b.failure));
@@ -149,21 +160,23 @@ const loader = new IntersectionObserver((entries) => {
 
 function cardOf(b) {
   const card = make('article', { class: b.isFailed ? 'card failed' : 'card', id: `b${b.index}` },
-    make('h3', {}, b.name, b.isFailed && ' ', b.isFailed && make('span', { class: 'badge bad' }, 'failed'),
+    make('h3', {}, b.name, ...badgeOf(b),
       make('span', { class: 'soft' }, `${count(b.planes, 'plane')}, ${count(b.segments, 'segment')}`)));
   loader.observe(card);
   return card;
 }
 
 function captionOf(l) {
+  const standIn = l.stand_in ? `, mesh of layer ${l.layer + 1}` : '';
   const difference = l.like_finer ? `, as layer ${l.layer + 1}` : l.own_gsd > 0 ? `, own g ${metres(l.own_gsd)} m/px` : '';
-  return `${count(l.faces, 'face')}${difference}`;
+  return `${count(l.faces, 'face')}${standIn}${difference}`;
 }
 
-const reasons = { ground: 'ground', floater: 'pieces afloat' };
+const reasons = { ground: 'ground', floater: 'pieces afloat', inside: 'what nobody sees from outside', lost: 'LOST' };
 function leftOut(b) {
   const area = (l) => (l.area > 0 ? `${l.area.toFixed(1)} m², ` : '');
-  return b.left_out.map((l) => `${reasons[l.reason]} (${area(l)}${shareText(l.share)}), up to ${l.farthest.toFixed(1)} m away`).join('; ');
+  const volume = (l) => (isNumber(l.volume) ? `; ${l.volume.toFixed(1)} m³, ${shareText(l.volume_share)} of the volume` : '');
+  return b.left_out.map((l) => `${reasons[l.reason]} (${area(l)}${shareText(l.share)}${volume(l)}), up to ${l.farthest.toFixed(1)} m away`).join('; ');
 }
 
 function measuresOf(b) {

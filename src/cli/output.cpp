@@ -16,6 +16,7 @@
 #include "../error.h"
 #include "../georeference.h"
 #include "../parallel.h"
+#include "../pipeline_losses.h"
 #include "../publish.h"
 #include "../report.h"
 #include "../report_parts.h"
@@ -209,9 +210,10 @@ void add_switch_options(CLI::App& app, SwitchOptions& o) {
          "with --switch visual: a change may be as large as a square of this side [pixels], "
          "default 14")
       ->check(number_between(1.0, 32.0));
-  app.add_option("--pixel-error", o.pixel_error,
-                 "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
-                 "may be wrong when it is shown, default 2")
+  app.add_option(
+         "--pixel-error", o.pixel_error,
+         "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
+         "may be wrong when it is shown, default 2")
       ->check(number_between(0.01, 1e4));
   app.add_option("--switch-share", o.share,
                  "with --switch-scope scene: the share of buildings whose own bound is kept, "
@@ -312,13 +314,18 @@ void report_problems(const Scene& scene, const Log& log) {
       if (!layer.failure.empty())
         log.message(Level::kError, b.source.name + ", layer " + std::to_string(layer.layer) + ": " +
                                        layer.failure);
+      else if (is_failure(layer.stand_in))
+        log.message(Level::kError, b.source.name + ", layer " + std::to_string(layer.layer) + ": " +
+                                       describe(layer.stand_in));
+    for (const std::string& w : loss_warnings(b))
+      log.message(b.has_lost() ? Level::kError : Level::kWarning, b.source.name + ": " + w);
     for (const std::string& w : b.warnings) log.message(Level::kWarning, b.source.name + ": " + w);
   }
 }
 
 int exit_code(const Scene& scene) {
   std::size_t failed = scene.failures.size() + !scene.tileset_failure.empty();
-  for (const Building& b : scene.buildings) failed += b.has_failed();
+  for (const Building& b : scene.buildings) failed += b.has_failed() || b.has_lost();
   if (failed == 0) return 0;
   const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),
                                        [](const Building& b) { return b.failure.empty(); });
@@ -334,10 +341,14 @@ int finish(const Scene& scene, const Options& options, double seconds, Pictures 
   report_problems(scene, log);
   const auto done = std::count_if(scene.buildings.begin(), scene.buildings.end(),
                                   [](const Building& b) { return b.failure.empty(); });
+  const auto lossy = std::count_if(
+      scene.buildings.begin(), scene.buildings.end(),
+      [](const Building& b) { return b.failure.empty() && (b.has_lost() || b.has_failed()); });
   std::ostringstream summary;
   summary << done << " of " << scene.buildings.size() + scene.failures.size() << " buildings in "
           << std::fixed << std::setprecision(1) << seconds << " s, written to " << a.out
           << " (layer 0 is the coarsest)";
+  if (lossy > 0) summary << "; of " << lossy << " of them something is lost, as said above";
   log.message(Level::kInfo, summary.str());
   return exit_code(scene);
 }

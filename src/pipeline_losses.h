@@ -1,0 +1,29 @@
+// What a building's chain lost or invented: the measures between its last mesh and its report.
+#pragma once
+
+#include "pipeline.h"
+
+namespace colod {
+
+/// Adds to `left_out` the bodies of the source that the finest layer does not stand for, and the
+/// shares of the volume; sets `solid`. The finest layer is still in the building's frame. A cloud's
+/// surface is that of its planes' outlines, steep ones apart.
+void weigh_finest(Building& building);
+
+/// Of a building that failed as a whole nothing more is lost.
+void forget_losses(Building& building);
+
+/// Measures how much of each layer is invented; where it is too much (scene_part.h) the next finer
+/// layer's mesh stands in.
+void replace_invented(Building& building);
+
+/// Why the finest layer is no building's (scene_part.h); empty: it is one.
+std::string judge_building(const Building& building);
+
+/// What happened to a layer whose mesh is another's, as a clause without its name.
+const char* describe(StandIn reason);
+
+/// Warnings of what was lost or left out over a stated share (left_out.h), by falling share.
+std::vector<std::string> loss_warnings(const Building& building);
+
+}  // namespace colod
