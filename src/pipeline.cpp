@@ -87,7 +87,8 @@ Extraction extract_planes(const Building& b, int k, const std::vector<RoundShape
   for (std::vector<int>& set : spares)
     std::erase_if(set, [&](int p) { return b.planes.has_side(p); });
   std::erase_if(spares, [](const std::vector<int>& set) { return set.empty(); });
-  Extraction result = extract_layer(reduced.planes, reduced.which, spares, sight, options, joined);
+  Sight seen(reduced.planes);  // a chord of the real surface would be taken for an inside
+  Extraction result = extract_layer(reduced.planes, reduced.which, spares, seen, options, joined);
   for (PolygonMesh::Facet& f : result.mesh.facets)
     if (f.plane >= 0) f.plane = reduced.real[f.plane];
   return result;

@@ -35,6 +35,27 @@ Plane side_plane(const RoundShape& shape, const RoundShape::Side& side) {
   return plane;
 }
 
+/// Rows that follow each other are on the layer together, when half of what they stand for is: a
+/// dome without some of its rings would be a crown.
+std::vector<char> rows_on_layer(const Planes& planes, const std::vector<char>& is_in,
+                                const RoundShape& reduced) {
+  std::vector<int> chain;
+  for (const RoundShape::Row& row : reduced.rows)
+    chain.push_back(chain.empty() ? 0 : chain.back() + (row.is_joined ? 0 : 1));
+  std::vector<double> balance(reduced.rows.size(),
+                              0);  // per chain: m² on the layer − m² that are not
+  for (const RoundShape::Side& side : reduced.sides) {
+    const double each = side.area / static_cast<double>(side.faces.size());
+    for (const int face : side.faces) {
+      const int p = planes.plane_of_item[face];
+      balance[chain[side.row]] += p >= 0 && is_in[p] ? each : -each;
+    }
+  }
+  std::vector<char> is_row_in;
+  for (const int c : chain) is_row_in.push_back(balance[c] > 0);
+  return is_row_in;
+}
+
 }  // namespace
 
 void mark_sides(const std::vector<RoundShape>& shapes, Planes& planes) {
@@ -56,25 +77,14 @@ ReducedLayer reduce_layer(const Planes& planes, const std::vector<int>& layer_pl
   for (std::size_t p = 0; p < planes.planes.size(); ++p) result.real.push_back(static_cast<int>(p));
   for (const RoundShape& shape : shapes) {
     const RoundShape reduced = reduce_round(shape, turn);
-    // A row is on the layer as a whole: half a ring would be a step.
-    std::vector<double> wanted(reduced.rows.size(), 0), all(reduced.rows.size(), 0);
+    const std::vector<char> is_row_in = rows_on_layer(planes, is_in, reduced);
     for (const RoundShape::Side& side : reduced.sides) {
-      std::vector<int> own;
+      if (!is_row_in[side.row]) continue;
       for (const int face : side.faces)
-        if (const int p = planes.plane_of_item[face]; p >= 0) own.push_back(p);
-      std::sort(own.begin(), own.end());
-      own.erase(std::unique(own.begin(), own.end()), own.end());
-      for (const int p : own) {
-        all[side.row] += planes.planes[p].area;
-        if (is_in[p]) wanted[side.row] += planes.planes[p].area;
-      }
-    }
-    for (const RoundShape::Side& side : reduced.sides) {
+        if (const int p = planes.plane_of_item[face]; p >= 0) result.planes.planes[p].outline = {};
       Plane plane = side_plane(reduced, side);
       const int real = planes.plane_of_item[side.faces[side.faces.size() / 2]];
-      if (real < 0 || wanted[side.row] <= 0.5 * all[side.row] ||
-          side.area < kLeastDrawn * plane.area)
-        continue;
+      if (real < 0 || side.area < kLeastDrawn * plane.area) continue;
       result.which.push_back(static_cast<int>(result.planes.planes.size()));
       result.real.push_back(real);
       result.planes.planes.push_back(std::move(plane));

@@ -10,7 +10,7 @@ namespace colod {
 
 /// A layer's planes where round shapes have fewer sides.
 struct ReducedLayer {
-  Planes planes;           ///< the building's, then the new sides
+  Planes planes;  ///< the building's, then the new sides; what these stand for has no outline
   std::vector<int> which;  ///< planes of the layer: old sides are out, new ones in
   std::vector<int> real;   ///< per plane: one of the building's that it stands for
 };
