@@ -4,11 +4,14 @@
 #include "pipeline_rounds.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace colod {
 namespace {
 
-constexpr double kLeastDrawn = 0.25;  // of a new side: less is what a house leaves of it
+constexpr double kCapCosine = 0.99999;  // between a cap's normal and the axis
+constexpr double kCapReach = 0.01;      // metres that a cap may be off its row's end
+constexpr double kLeastDrawn = 0.25;    // of a new side: less is what a house leaves of it
 
 double area_of(const Outline& outline) {
   double sum = 0;
@@ -35,25 +38,42 @@ Plane side_plane(const RoundShape& shape, const RoundShape::Side& side) {
   return plane;
 }
 
-/// Rows that follow each other are on the layer together, when half of what they stand for is: a
-/// dome without some of its rings would be a crown.
+/// A shape of which more than half is on the layer is there as a whole, and else the rows that
+/// follow each other are together: a dome without some of its rings would be a crown.
 std::vector<char> rows_on_layer(const Planes& planes, const std::vector<char>& is_in,
                                 const RoundShape& reduced) {
   std::vector<int> chain;
   for (const RoundShape::Row& row : reduced.rows)
     chain.push_back(chain.empty() ? 0 : chain.back() + (row.is_joined ? 0 : 1));
-  std::vector<double> balance(reduced.rows.size(),
-                              0);  // per chain: m² on the layer − m² that are not
+  double whole = 0;  // m² on the layer less what is not
+  std::vector<double> of_chain(reduced.rows.size(), 0);
   for (const RoundShape::Side& side : reduced.sides) {
     const double each = side.area / static_cast<double>(side.faces.size());
     for (const int face : side.faces) {
       const int p = planes.plane_of_item[face];
-      balance[chain[side.row]] += p >= 0 && is_in[p] ? each : -each;
+      const double area = p >= 0 && is_in[p] ? each : -each;
+      whole += area, of_chain[chain[side.row]] += area;
     }
   }
   std::vector<char> is_row_in;
-  for (const int c : chain) is_row_in.push_back(balance[c] > 0);
+  for (const int c : chain) is_row_in.push_back(whole > 0 || of_chain[c] > 0);
   return is_row_in;
+}
+
+/// A flat plane that ends a row of the shape: a gallery's floor, what is under an eave.
+bool is_cap(const Plane& plane, const RoundShape& shape, const std::vector<char>& is_row_in) {
+  if (std::abs(plane.normal.dot(shape.axis)) < kCapCosine) return false;
+  const double height = shape.axis.dot(plane.centroid - shape.center);
+  double radius = -1;
+  for (std::size_t r = 0; r < is_row_in.size(); ++r)
+    for (const Vec2& end : {shape.rows[r].from, shape.rows[r].to})
+      if (is_row_in[r] && std::abs(end.y() - height) < kCapReach)
+        radius = std::max(radius, std::abs(end.x()) / std::cos(shape.step / 2));
+  return radius >= 0 && std::all_of(plane.outline.vertices.begin(), plane.outline.vertices.end(),
+                                    [&](const Vec3& v) {
+                                      const Vec3 x = v - shape.center;
+                                      return shape.axis.cross(x).norm() < radius + kCapReach;
+                                    });
 }
 
 }  // namespace
@@ -90,6 +110,9 @@ ReducedLayer reduce_layer(const Planes& planes, const std::vector<int>& layer_pl
       result.planes.planes.push_back(std::move(plane));
       result.planes.is_side.push_back(1);
     }
+    for (std::size_t p = 0; p < is_in.size(); ++p)
+      if (!is_in[p] && !planes.is_side[p] && is_cap(planes.planes[p], reduced, is_row_in))
+        is_in[p] = 1, result.which.push_back(static_cast<int>(p));
   }
   return result;
 }

@@ -11,7 +11,7 @@ namespace colod::regions {
 namespace {
 
 constexpr std::size_t kMostSides = 2500;  // of a shape: more take half a minute to cut
-constexpr double kFinest = 0.02;          // metres that fewer sides may be off
+constexpr double kFinest = 0.01;  // metres between a side and its arc: twice in both directions
 
 Region side_region(const Items& items, const RoundShape& shape, const RoundShape::Side& side) {
   Region r;
