@@ -60,6 +60,13 @@ std::vector<char> rows_on_layer(const Planes& planes, const std::vector<char>& i
   return is_row_in;
 }
 
+/// A plane that the side stands for; −1: none was large enough for one.
+int plane_of(const Planes& planes, const RoundShape::Side& side) {
+  int most = -1;
+  for (const int face : side.faces) most = std::max(most, planes.plane_of_item[face]);
+  return most;
+}
+
 /// A flat plane that ends a row of the shape: a gallery's floor, what is under an eave.
 bool is_cap(const Plane& plane, const RoundShape& shape, const std::vector<char>& is_row_in) {
   if (std::abs(plane.normal.dot(shape.axis)) < kCapCosine) return false;
@@ -103,10 +110,9 @@ ReducedLayer reduce_layer(const Planes& planes, const std::vector<int>& layer_pl
       for (const int face : side.faces)
         if (const int p = planes.plane_of_item[face]; p >= 0) result.planes.planes[p].outline = {};
       Plane plane = side_plane(reduced, side);
-      const int real = planes.plane_of_item[side.faces[side.faces.size() / 2]];
-      if (real < 0 || side.area < kLeastDrawn * plane.area) continue;
+      if (side.area < kLeastDrawn * plane.area) continue;
       result.which.push_back(static_cast<int>(result.planes.planes.size()));
-      result.real.push_back(real);
+      result.real.push_back(plane_of(planes, side));
       result.planes.planes.push_back(std::move(plane));
       result.planes.is_side.push_back(1);
     }

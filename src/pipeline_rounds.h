@@ -12,7 +12,7 @@ namespace colod {
 struct ReducedLayer {
   Planes planes;  ///< the building's, then the new sides; what these stand for has no outline
   std::vector<int> which;  ///< planes of the layer: old sides are out, new ones in
-  std::vector<int> real;   ///< per plane: one of the building's that it stands for
+  std::vector<int> real;   ///< per plane: one of the building's that it stands for; −1: none
 };
 
 /// Marks the planes that are sides of a round shape.
