@@ -15,6 +15,7 @@ namespace {
 
 using rounds::kMostStep;
 constexpr double kSameLength = 2.5;    // rows of a run differ by less: a drum is no row of its dome
+constexpr double kLeastBend = 0.02;    // radians: what files with mm do not turn by chance
 constexpr double kHardlyFewer = 0.75;  // of the sides: then all stay
 
 /// Rows first … last − 1.
@@ -26,20 +27,32 @@ double turn_between(const RoundShape::Row& a, const RoundShape::Row& b) {
   return std::acos(std::clamp(a.normal().dot(b.normal()), -1.0, 1.0));
 }
 
+/// Radians from row r − 1 to r, positive where the profile bulges; 0: too little to tell.
+double bend_before(const std::vector<RoundShape::Row>& rows, int r) {
+  const Vec2 a = rows[r - 1].to - rows[r - 1].from, b = rows[r].to - rows[r].from;
+  const double bend = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  return std::abs(bend) < kLeastBend ? 0 : bend;
+}
+
 std::vector<Run> find_runs(const std::vector<RoundShape::Row>& rows) {
   std::vector<Run> runs;
+  double bend = 0;  // of the run so far: an onion's bulb ends where its tip begins
   for (int r = 0; r < static_cast<int>(rows.size()); ++r) {
     bool is_smooth = r > 0 && rows[r].is_joined;
     if (is_smooth) {
       const double a = (rows[r - 1].to - rows[r - 1].from).norm();
       const double b = (rows[r].to - rows[r].from).norm();
       is_smooth = turn_between(rows[r - 1], rows[r]) <= kMostStep &&
-                  std::max(a, b) <= kSameLength * std::min(a, b);
+                  std::max(a, b) <= kSameLength * std::min(a, b) &&
+                  bend * bend_before(rows, r) >= 0;
     }
-    if (is_smooth)
-      ++runs.back().last;
-    else
+    if (!is_smooth) {
       runs.push_back({r, r + 1});
+      bend = 0;
+      continue;
+    }
+    ++runs.back().last;
+    if (bend == 0) bend = bend_before(rows, r);
   }
   return runs;
 }
@@ -51,7 +64,8 @@ int count_chords(const std::vector<RoundShape::Row>& rows, const Run& run, doubl
   double total = 0;
   for (int r = run.first + 1; r < run.last; ++r) total += turn_between(rows[r - 1], rows[r]);
   total *= static_cast<double>(n) / (n - 1);  // half a turn at both ends
-  const int chords = std::max(1, static_cast<int>(std::ceil(total / turn - 0.1)));
+  const int least = total > turn / 2 ? 2 : 1;  // one alone would cut a bulb off
+  const int chords = std::max(least, static_cast<int>(std::ceil(total / turn - 0.1)));
   return chords > kHardlyFewer * n ? n : chords;
 }
 

@@ -14,10 +14,11 @@ namespace rounds {
 namespace {
 
 constexpr std::size_t kMostRows = 400;
-constexpr int kLeastTogether = 3;   // columns side by side that make a row
-constexpr double kAlike = 0.98;     // cosine of a narrow face's normal and its side's
-constexpr double kSteepest = 0.01;  // of a normal across the axis: less has no column
-constexpr double kJoined = 0.02;    // metres between the ends of rows that follow each other
+constexpr int kLeastTogether = 3;      // columns side by side that make a row
+constexpr double kAlike = 0.98;        // cosine of a narrow face's normal and its side's
+constexpr double kSteepest = 0.01;     // of a normal across the axis: less has no column
+constexpr double kHardlyFewer = 0.98;  // of the faces that a looser tolerance places
+constexpr double kJoined = 0.02;       // metres between the ends of rows that follow each other
 
 /// A line in the half-plane, and who lies on it.
 struct Line {
@@ -40,8 +41,9 @@ int column_of(const RoundShape& shape, const Vec3& normal) {
 
 class Sorter {
  public:
-  Sorter(const Facets& facets, const std::vector<int>& founders, const RoundShape& shape)
-      : facets_(facets), shape_(shape), is_founder_(facets.normal.size(), 0) {
+  Sorter(const Facets& facets, const std::vector<int>& founders, const RoundShape& shape,
+         double exact)
+      : facets_(facets), shape_(shape), exact_(exact), is_founder_(facets.normal.size(), 0) {
     for (const int f : founders) is_founder_[f] = 1;
   }
 
@@ -76,7 +78,7 @@ class Sorter {
   }
   void place(int face, int column) {
     const Vec2 own = turned_back(facets_.normal[face], column).normalized();
-    double least = kExact;
+    double least = exact_;
     Line* nearest = nullptr;
     for (Line& line : lines_) {
       if (line.normal.dot(own) < kAlike) continue;
@@ -88,7 +90,7 @@ class Sorter {
       double offset = 0;
       for (const int v : facets_.mesh.faces[face])
         offset += own.dot(turned_back(facets_.mesh.vertices[v] - shape_.center, column)) / 3;
-      if (reach(face, column, own, offset) > kExact) return;
+      if (reach(face, column, own, offset) > exact_) return;
       nearest = &lines_.emplace_back(Line{own, offset, {}});
     }
     nearest->faces.emplace_back(column, face);
@@ -96,6 +98,7 @@ class Sorter {
 
   const Facets& facets_;
   const RoundShape& shape_;
+  double exact_;
   std::vector<char> is_founder_;
   std::vector<Line> lines_;
 };
@@ -110,6 +113,24 @@ bool is_row(const Line& line, const RoundShape& shape) {
     if (together >= kLeastTogether) return true;
   }
   return false;
+}
+
+/// The rows of a shape. Near an apex neighbours are millimetres apart, so that the tightest
+/// tolerance counts at which hardly fewer faces find a row.
+std::vector<Line> find_lines(const Facets& facets, const std::vector<int>& founders,
+                             const RoundShape& shape) {
+  std::vector<Line> best;
+  std::size_t most = 0;
+  for (const double exact : {kExact, kExact / 3, kExact / 15}) {
+    std::vector<Line> lines = Sorter(facets, founders, shape, exact).lines();
+    std::erase_if(lines, [&](const Line& line) { return !is_row(line, shape); });
+    std::size_t faces = 0;
+    for (const Line& line : lines) faces += line.faces.size();
+    if (faces < kHardlyFewer * most) break;
+    most = std::max(most, faces);
+    best = std::move(lines);
+  }
+  return best;
 }
 
 RoundShape::Row extent(const Facets& facets, const RoundShape& shape, const Line& line) {
@@ -181,8 +202,7 @@ Facets collect_facets(const Mesh& mesh) {
 }
 
 bool find_sides(const Facets& facets, const std::vector<int>& founders, RoundShape& shape) {
-  std::vector<Line> lines = Sorter(facets, founders, shape).lines();
-  std::erase_if(lines, [&](const Line& line) { return !is_row(line, shape); });
+  std::vector<Line> lines = find_lines(facets, founders, shape);
   for (const Line& line : lines) shape.rows.push_back(extent(facets, shape, line));
   const std::vector<int> order = put_in_order(shape.rows);
   for (std::size_t i = 0; i < order.size(); ++i)
