@@ -63,7 +63,7 @@ int count_chords(const std::vector<RoundShape::Row>& rows, const Run& run, doubl
   if (n == 1) return 1;
   double total = 0;
   for (int r = run.first + 1; r < run.last; ++r) total += turn_between(rows[r - 1], rows[r]);
-  total *= static_cast<double>(n) / (n - 1);  // half a turn at both ends
+  total *= static_cast<double>(n) / (n - 1);   // half a turn at both ends
   const int least = total > turn / 2 ? 2 : 1;  // one alone would cut a bulb off
   const int chords = std::max(least, static_cast<int>(std::ceil(total / turn - 0.1)));
   return chords > kHardlyFewer * n ? n : chords;
