@@ -136,8 +136,10 @@ std::vector<double> explained_areas(const Attempt& attempt, std::size_t planes) 
 }
 
 /// Per input plane whether the surface is worth its cut: one facet that is no sliver, and enough of
-/// the plane's facets under its outline; or it bounds a hollow.
-std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<Hollow>& hollows,
+/// the plane's facets under its outline; or it bounds a hollow, or is one of
+/// many sides that only together are round.
+std::vector<char> worthwhile_planes(const Attempt& attempt, const Planes& planes,
+                                    const std::vector<Hollow>& hollows,
                                     const std::vector<double>& explained) {
   std::vector<char> is_wide(explained.size(), 0);
   std::vector<double> total(explained.size(), 0);
@@ -151,6 +153,8 @@ std::vector<char> worthwhile_planes(const Attempt& attempt, const std::vector<Ho
     is_wide[p] = is_wide[p] && explained[p] >= kLeastCovered * total[p];
   for (const Hollow& hollow : hollows)
     for (const int p : hollow.bounds) is_wide[p] = 1;
+  for (std::size_t p = 0; p < is_wide.size(); ++p)
+    is_wide[p] |= planes.has_side(static_cast<int>(p));
   return is_wide;
 }
 
@@ -174,7 +178,7 @@ void prune(CuttingPlan& plan, const Planes& planes, Sight& sight, const Extracti
            Attempt& best) {
   for (int round = 0; round < kPruningRounds; ++round) {
     const std::vector<double> before = explained_areas(best, planes.planes.size());
-    const std::vector<char> is_worthwhile = worthwhile_planes(best, plan.hollows, before);
+    const std::vector<char> is_worthwhile = worthwhile_planes(best, planes, plan.hollows, before);
     CuttingPlan lean = leaner(plan, best, is_worthwhile);
     if (lean.planes.size() == plan.planes.size()) return;
     Attempt next = try_plan(lean, planes, sight, options);
@@ -192,8 +196,17 @@ void prune(CuttingPlan& plan, const Planes& planes, Sight& sight, const Extracti
   }
 }
 
+/// Per plane of the partition whether it is a side of a round shape.
+std::vector<char> sides_of(const Partition& partition, const Planes& planes) {
+  std::vector<char> is_side;
+  for (const Partition::IntPlane& p : partition.planes)
+    is_side.push_back(p.source_plane >= 0 && planes.has_side(p.source_plane));
+  return is_side;
+}
+
 /// Facets that are not worth their price at the layer's tolerance go.
-void simplify(const ExtractionOptions& options, bool is_exact, Attempt& attempt) {
+void simplify(const Planes& planes, const ExtractionOptions& options, bool is_exact,
+              Attempt& attempt) {
   const double area = surface_area(attempt.mesh.mesh());
   const double volume = signed_volume(attempt.mesh.mesh());
   const double price = kFacetPrice * options.tolerance * area;
@@ -201,7 +214,8 @@ void simplify(const ExtractionOptions& options, bool is_exact, Attempt& attempt)
   simplify_cells(
       attempt.partition, attempt.evidence, attempt.is_forced_out,
       {.facet_volume = is_exact && options.is_finest ? std::min(price, kMostPrice) : price,
-       .depth = kMostMoved * options.tolerance},
+       .depth = kMostMoved * options.tolerance,
+       .is_fixed = sides_of(attempt.partition, planes)},
       is_inside);
   double mended = 0;
   PolygonMesh mesh = extract_surface(attempt.partition, is_inside, false, &mended);
@@ -246,7 +260,7 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
   const bool is_exact = !options.is_paper && planes.distance <= kLeastDistance;
-  if (options.tolerance > 0) simplify(options, is_exact, attempt);
+  if (options.tolerance > 0) simplify(planes, options, is_exact, attempt);
   if (options.is_finest && is_exact)
     keep_sheets(std::move(plan), planes, layer_planes, sight, options, attempt);
   Extraction result;

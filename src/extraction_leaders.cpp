@@ -38,6 +38,7 @@ std::vector<int> find_leaders(const Planes& planes, const std::vector<int>& laye
     const Plane& plane = planes.planes[q];
     double least = tolerance;
     leader_of[q] = q;
+    if (planes.has_side(q)) continue;
     for (const int p : leaders) {
       const Plane& leader = planes.planes[p];
       if (leader.normal.dot(plane.normal) < alike) continue;

@@ -185,9 +185,16 @@ class Simplifier {
                     reach(turn.new_pieces, turn.old_pieces));
   }
 
+  bool is_fixed(const std::vector<int>& pieces) const {
+    return !options_.is_fixed.empty() && std::any_of(pieces.begin(), pieces.end(), [&](int p) {
+      return options_.is_fixed[partition_.pieces[p].plane] != 0;
+    });
+  }
+
   /// How many facets that saved; 0: nothing was turned.
   int try_turn(const std::vector<int>& facet, bool is_removing) {
     const Turn turn = make_turn(cells_beside(facet, is_removing));
+    if (is_fixed(turn.old_pieces) || is_fixed(turn.new_pieces)) return 0;
     const double most_saved = 2.0 * static_cast<double>(turn.planes.size());  // hardly ever more
     if (turn.new_pieces.empty() || turn.cost > options_.facet_volume * most_saved) return 0;
     const auto flip = [&] {

@@ -15,6 +15,7 @@
 #include "left_out.h"
 #include "parallel.h"
 #include "pipeline_losses.h"
+#include "pipeline_rounds.h"
 #include "stopwatch.h"
 
 namespace colod {
@@ -29,6 +30,7 @@ constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest lay
 constexpr const char* kEmptyLayer =
     "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
 constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
+constexpr int kSides = 8;  // of round shapes on layer 0; twice as many on each finer one
 
 bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
@@ -72,20 +74,39 @@ double tolerance(const Building& b, int k, const Options& o) {
   return std::max(share * b.planes.box.diagonal(), least);
 }
 
+/// The layer of these planes; where round shapes have fewer sides, with planes of its own.
+Extraction extract_planes(const Building& b, int k, const std::vector<RoundShape>& shapes,
+                          const std::vector<int>& planes, std::vector<std::vector<int>> spares,
+                          Sight& sight, const Options& o, std::vector<int>& joined) {
+  const ExtractionOptions options{.is_paper = is_paper(o),
+                                  .nr = o.nr,
+                                  .tolerance = tolerance(b, k, o),
+                                  .is_finest = k + 1 == o.layers};
+  if (shapes.empty() || options.is_finest)
+    return extract_layer(b.planes, planes, spares, sight, options, joined);
+  const ReducedLayer reduced =
+      reduce_layer(b.planes, planes, shapes, 2 * M_PI / (kSides * std::pow(2, k)));
+  for (std::vector<int>& set : spares)
+    std::erase_if(set, [&](int p) { return b.planes.has_side(p); });
+  std::erase_if(spares, [](const std::vector<int>& set) { return set.empty(); });
+  Sight seen(reduced.planes);  // a chord of the real surface would be taken for an inside
+  Extraction result = extract_layer(reduced.planes, reduced.which, spares, seen, options, joined);
+  for (PolygonMesh::Facet& f : result.mesh.facets)
+    if (f.plane >= 0) f.plane = reduced.real[f.plane];
+  return result;
+}
+
 /// `planes`: in the order of cutting, those of coarser layers, and then of this one too.
-void extract(Building& b, Layer& layer, std::vector<int>& planes, Sight& sight, const Options& o) {
+void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
+             std::vector<int>& planes, Sight& sight, const Options& o) {
   try {
     add_layer_planes(b, layer.layer, o, planes);
     std::vector<std::vector<int>> spares;
     if (!is_paper(o) && layer.layer == 0 && o.layers > 1)
       spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
     std::vector<int> joined;
-    Extraction result = extract_layer(b.planes, planes, spares, sight,
-                                      {.is_paper = is_paper(o),
-                                       .nr = o.nr,
-                                       .tolerance = tolerance(b, layer.layer, o),
-                                       .is_finest = layer.layer + 1 == o.layers},
-                                      joined);
+    Extraction result =
+        extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o, joined);
     planes.insert(planes.end(), joined.begin(), joined.end());
     layer.mesh = std::move(result.mesh);
     if (layer.mesh.triangles.empty()) layer.failure = kEmptyLayer;
@@ -311,6 +332,9 @@ void mesh_building(Building& b, const Options& options) {
   if (!b.failure.empty()) return;
   try {
     Sight sight(b.planes);
+    const std::vector<RoundShape> shapes =
+        is_paper(options) ? std::vector<RoundShape>() : find_rounds(b.source);
+    mark_sides(shapes, b.planes);
     std::vector<int> planes;
     for (int k = 0; k < options.layers; ++k) {
       Layer layer;
@@ -318,7 +342,7 @@ void mesh_building(Building& b, const Options& options) {
       layer.segments = static_cast<int>(std::count_if(
           b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
       Stopwatch watch(b.timings.extraction);
-      extract(b, layer, planes, sight, options);
+      extract(b, layer, shapes, planes, sight, options);
       b.layers.push_back(std::move(layer));
     }
     keep_chain_sound(b, options);

@@ -124,10 +124,15 @@ void limit_count(std::vector<Region>& regions, std::vector<std::string>& warning
   regions.resize(kMostPlanes);
 }
 
-std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
-  drop_floaters(items, result.warnings);
+void set_used(const std::vector<Region>& regions, bool is_used, Items& items) {
+  for (const Region& r : regions)
+    for (const int i : r.items) items.is_used[i] = is_used;
+}
+
+/// The regions of the items in use, which have a part of the building's `total` square metres.
+std::vector<Region> flat_regions(const Items& items, const Box& box, double total,
+                                 const PlaneOptions& options, Planes& result) {
   const double noise = estimate_noise(items);
-  const Box box = used_box(items);
   result.distance = growing_distance(noise, box, options);
   std::vector<Region> regions = plain_regions(items, noise, options.angle_deg);
   if (!regions.empty()) {
@@ -136,11 +141,23 @@ std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Pl
     const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
     regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
   }
-  const double least = least_area(noise, result.distance, used_area(items));
+  const double least = least_area(noise, result.distance, total);
   drop_small(items, least / 4, options.min_points / 2, regions);
   limit_count(regions, result.warnings);
   regularize(items, result.distance, align_options(noise, result.distance, box), regions);
   drop_small(items, least, options.min_points, regions);
+  return regions;
+}
+
+std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
+  drop_floaters(items, result.warnings);
+  const double total = used_area(items);
+  const Box box = used_box(items);
+  std::vector<Region> round = round_regions(items);
+  set_used(round, false, items);
+  std::vector<Region> regions = flat_regions(items, box, total, options, result);
+  set_used(round, true, items);
+  std::move(round.begin(), round.end(), std::back_inserter(regions));
   absorb_rest(items, result.distance, regions);
   return regions;
 }

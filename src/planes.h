@@ -33,7 +33,11 @@ struct Planes {
   double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
   double distance = 0;    ///< metres: the region growing distance used; kLeastDistance or less
                           ///< where no noise asks for more
+  std::vector<char> is_side;  ///< per plane: of a round shape (rounds.h), exact and as good as its
+                              ///< neighbours, however small; empty: none is
   std::vector<std::string> warnings;
+
+  bool has_side(int plane) const { return !is_side.empty() && is_side[plane]; }
 };
 
 /// `source` is in its local frame (frame.h). Deterministic; uses threads. Throws Error{kProcess}

@@ -86,6 +86,10 @@ std::vector<std::pair<int, int>> neighboring_regions(const Items& items,
                                                      const std::vector<Region>& regions,
                                                      double gap);
 
+// planes_round.cpp
+/// A region for each side of the source's round shapes, on the shape's own planes.
+std::vector<Region> round_regions(const Items& items);
+
 // planes_paper.cpp
 std::vector<Region> grow_with_cgal(const Items& items, const PlaneOptions& options);
 
