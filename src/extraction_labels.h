@@ -57,9 +57,9 @@ std::vector<char> cut_cells(const Partition& partition, const Evidence& evidence
 double inside_vote(const Vote& vote, double escape = 1);
 
 struct SimplifyOptions {
-  double facet_volume = 0;     ///< m³ that may change sides for each facet that this saves
-  double depth = 0;            ///< metres that the surface may move
-  std::vector<char> is_fixed;  ///< per plane of the partition: its facets stay; empty: of none
+  double facet_volume = 0;          ///< m³ that may change sides for each facet that this saves
+  double depth = 0;                 ///< metres that the surface may move
+  std::vector<char> is_fixed = {};  ///< per plane of the partition: its facets stay; empty: of none
 };
 
 /// Turns the cells under or over a facet round where that leaves fewer facets; never the forced
