@@ -20,9 +20,9 @@
 namespace colod {
 namespace {
 
-constexpr double kCube = 2.5;    // metres: more than windows and doors are wide or high
-constexpr int kHalf = 4;         // voxels from the cube's middle to its side
-constexpr double kDepth = 0.75;  // metres: from reveals and sills the outside is nearer
+constexpr double kCube = 2.5;          // metres: more than windows and doors are wide or high
+constexpr double kFinest = kCube / 9;  // metres: a voxel of most buildings
+constexpr double kDepth = 0.2;         // metres, and two voxels: from reveals the outside is nearer
 // Of a cavity's walls: porches, niches and passages are open more widely (one of 2 by 2 m that goes
 // 4 m deep: 0.11), rooms less (0.02 to 0.05; a shop without its front 0.07).
 constexpr double kOpenShare = 0.08;
@@ -42,10 +42,10 @@ class Surroundings {
  public:
   explicit Surroundings(const Mesh& mesh) {
     Box box = bounding_box(mesh.vertices);
-    voxel_ = kCube / (2 * kHalf + 1);
     const Vec3 room = box.size() + Vec3::Constant(2 * kCube);
-    voxel_ = std::max(voxel_, std::cbrt(room.prod() / kMostVoxels));
-    const double margin = (2 * kHalf + 2) * voxel_;
+    voxel_ = std::max(kFinest, std::cbrt(room.prod() / kMostVoxels));
+    half_ = std::max(1, static_cast<int>(std::lround((kCube / voxel_ - 1) / 2)));
+    const double margin = (2 * half_ + 2) * voxel_;
     origin_ = box.min - Vec3(margin, margin, 0);
     const Vec3 size = box.max + Vec3::Constant(margin) - origin_;
     for (int k = 0; k < 3; ++k) n_[k] = static_cast<int>(std::ceil(size[k] / voxel_)) + 1;
@@ -65,6 +65,9 @@ class Surroundings {
       if (is_outside(from + (end * i / steps) * direction)) return true;
     return false;
   }
+
+  /// Metres within which a point must meet the outside to be seen.
+  double reach() const { return kDepth + 2 * voxel_; }
 
   bool is_outside(const Vec3& p) const {
     std::array<int, 3> c;
@@ -112,7 +115,7 @@ class Surroundings {
     return solid;
   }
 
-  /// Sets what lies within kHalf voxels of a set one along every axis: a cube about each.
+  /// Sets what lies within half_ voxels of a set one along every axis: a cube about each.
   void dilate(std::vector<char>& set) const {
     for (int axis = 0; axis < 3; ++axis) {
       const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n_[0] : index(0, 0, 1);
@@ -125,9 +128,9 @@ class Surroundings {
                                     : axis == 1 ? index(u, 0, w)
                                                 : index(u, w, 0);
           int last = -n;  // the set voxel that was passed last
-          for (int i = 0; i < n + kHalf; ++i) {
+          for (int i = 0; i < n + half_; ++i) {
             if (i < n && set[start + i * stride]) last = i;
-            if (i >= kHalf) line[i - kHalf] = i - last <= 2 * kHalf;
+            if (i >= half_) line[i - half_] = i - last <= 2 * half_;
           }
           for (int i = 0; i < n; ++i) set[start + i * stride] = line[i];
         }
@@ -186,6 +189,7 @@ class Surroundings {
   }
 
   double voxel_;
+  int half_;  // voxels from the cube's middle to its side
   Vec3 origin_;
   std::array<int, 3> n_;
   std::vector<char> is_outside_;
@@ -231,13 +235,14 @@ class Lookout {
 
  private:
   bool is_seen(const Vec3& p, const Vec3& normal) const {
+    const double reach = surroundings_.reach();
     int seen = 0;
     for (const Vec3& d : directions_) {
       const double slope = d.dot(normal);
       if (std::abs(slope) < 0.05) continue;
       const Vec3 from = p + std::copysign(kLift, slope) * normal;
-      const RayHit hit = rays_.first_hit(from, d, 0, kDepth);
-      if (!surroundings_.leads_outside(from, d, hit ? hit.distance : kDepth)) continue;
+      const RayHit hit = rays_.first_hit(from, d, 0, reach);
+      if (!surroundings_.leads_outside(from, d, hit ? hit.distance : reach)) continue;
       if (++seen == kSeen) return true;
     }
     return false;
