@@ -1,30 +1,38 @@
-// Points spread over a mesh's faces, for measures by area.
+// Points spread over a mesh's surface, for measures by area.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "geometry.h"
+#include "spread.h"
 
 namespace colod {
 
-/// Calls visit(point, m² that it stands for) at points of the face about `spacing` metres apart, at
-/// most 64 along an edge. Nothing for a face without an area or with a place that is not finite.
-template <typename Visit>
-void sample_face(const Mesh& m, const Face& f, double spacing, const Visit& visit) {
-  constexpr int kMostSteps = 64;
-  const Vec3 &a = m.vertices[f[0]], &b = m.vertices[f[1]], &c = m.vertices[f[2]];
-  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  const double area = face_area(m, f);
-  if (!std::isfinite(longest) || !(area > 0)) return;
-  const double steps = std::min(std::ceil(longest / spacing), 1.0 * kMostSteps);
-  const int n = std::max(1, static_cast<int>(steps));
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; i + j < n; ++j)
-      for (const double third : {1.0 / 3, 2.0 / 3}) {  // of n² equal triangles, the middles
-        const double s = (i + third) / n, t = (j + third) / n;
-        if (s + t < 1) visit(Vec3(a + s * (b - a) + t * (c - a)), area / (n * n));
-      }
+struct SurfaceSample {
+  Vec3 point;
+  int face;  ///< of the mesh
+};
+
+/// One point for every `spacing`² of the surface, in the order of the faces; of faces that are
+/// smaller every so many get one. At most 4096 on a face; faces with a place that is not finite get
+/// none.
+inline std::vector<SurfaceSample> spread_over(const Mesh& m, double spacing) {
+  constexpr double kMost = 4096;
+  std::vector<SurfaceSample> samples;
+  double due = 0.5;  // of a sample
+  for (std::size_t i = 0; i < m.faces.size(); ++i) {
+    const Face& f = m.faces[i];
+    const double area = face_area(m, f);
+    if (!std::isfinite(area)) continue;
+    due += std::min(kMost, area / (spacing * spacing));
+    for (int k = 1; due >= 1; ++k, --due)
+      samples.push_back(
+          {spread_on_triangle(m.vertices[f[0]], m.vertices[f[1]], m.vertices[f[2]], k),
+           static_cast<int>(i)});
+  }
+  return samples;
 }
 
 }  // namespace colod

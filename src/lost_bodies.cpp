@@ -114,69 +114,66 @@ std::vector<double> find_missing(const VoxelGrid& grid, const std::vector<char>&
   return distance;
 }
 
-/// What of the source's surface is about each body; returns all of its area.
-double measure_surface(const Mesh& source, const VoxelGrid& grid, const std::vector<char>& is_solid,
-                       const std::vector<int>& body_of, const RayScene& layer,
-                       std::vector<Body>& bodies) {
-  double total = 0;
-  for (const Face& f : source.faces)
-    sample_face(source, f, grid.size, [&](const Vec3& p, double area) {
-      total += area;
-      const auto [number, is_open] = beside(grid, is_solid, body_of, p);
-      if (number < 0 || !is_open) return;
-      Body& body = bodies[number];
-      const double distance = layer.nearest(p).distance;
-      const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
-      body.area += area;
-      body.farthest = std::max(body.farthest, distance);
-      if (distance > kFar * body.required_depth(volume)) body.far_area += area;
-    });
-  return total;
+/// A place on the source's surface.
+struct Place {
+  Beside beside;
+  double distance = 0;  ///< to the layer, where it is asked for
+};
+
+/// A place for each sample. How far a body's surface is from the layer is asked always; elsewhere
+/// only whether it is farther than `reach`.
+std::vector<Place> look_about(const std::vector<SurfaceSample>& samples, const VoxelGrid& grid,
+                              const std::vector<char>& is_solid, const std::vector<int>& body_of,
+                              const RayScene& layer, double reach) {
+  std::vector<Place> places(samples.size());
+  parallel_ranges(samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = samples[i].point;
+      Place& place = places[i];
+      place.beside = beside(grid, is_solid, body_of, p);
+      if (!place.beside.is_open) continue;
+      place.distance =
+          place.beside.body >= 0 ? layer.nearest(p).distance : distance_beyond(layer, p, reach);
+    }
+  });
+  return places;
+}
+
+/// What of the surface is about each body.
+void measure_bodies(const std::vector<Place>& places, const VoxelGrid& grid, double unit,
+                    std::vector<Body>& bodies) {
+  for (const auto& [about, distance] : places) {
+    if (about.body < 0 || !about.is_open) continue;
+    Body& body = bodies[about.body];
+    const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
+    body.area += unit;
+    body.farthest = std::max(body.farthest, distance);
+    if (distance > kFar * body.required_depth(volume)) body.far_area += unit;
+  }
 }
 
 /// What of the surface that is seen from outside is far from the layer, lost bodies apart: of open
 /// pieces there is no volume to miss.
-LeftOut find_missed(const Mesh& source, const VoxelGrid& grid, const std::vector<char>& is_solid,
-                    const std::vector<int>& body_of, const std::vector<char>& is_lost,
-                    const RayScene& layer) {
-  const double reach = std::max(kReach, kReachShare * used_box(source).diagonal());
-  struct Sums {
-    double all = 0, missed = 0, farthest = 0;
-  };
-  std::vector<Sums> of_face(source.faces.size());
-  parallel_for(
-      source.faces.size(),
-      [&](std::size_t i) {
-        Sums& sums = of_face[i];
-        sample_face(source, source.faces[i], grid.size, [&](const Vec3& p, double area) {
-          sums.all += area;
-          const auto [body, is_open] = beside(grid, is_solid, body_of, p);
-          if (!is_open || (body >= 0 && is_lost[body])) return;
-          const double distance = distance_beyond(layer, p, reach);
-          if (distance > 0) sums.missed += area;
-          sums.farthest = std::max(sums.farthest, distance);
-        });
-      },
-      kGrain);
-  Sums all;
-  for (const Sums& one : of_face) {
-    all.all += one.all, all.missed += one.missed;
-    all.farthest = std::max(all.farthest, one.farthest);
-  }
+LeftOut find_missed(const std::vector<Place>& places, double unit, double reach,
+                    const std::vector<char>& is_lost) {
   LeftOut out;
   out.reason = LeftOut::Reason::kLost;
-  out.area = all.missed;
-  out.share = all.all > 0 ? all.missed / all.all : 0;
-  out.farthest = all.farthest;
+  for (const auto& [about, distance] : places) {
+    if (!about.is_open || distance <= reach || (about.body >= 0 && is_lost[about.body])) continue;
+    out.area += unit;
+    out.farthest = std::max(out.farthest, distance);
+  }
+  out.share = out.area / (unit * std::max<double>(1, static_cast<double>(places.size())));
   return out;
 }
 
 }  // namespace
 
-Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
-  const VoxelGrid grid = make_grid(used_box(source));
+Holdings weigh_layer(const Surface& source, const Mesh& layer) {
+  const Box box = used_box(source.mesh);
+  const VoxelGrid grid = make_grid(box);
   const RayScene layer_scene(layer);
-  const std::vector<char> is_solid = find_solid(grid, RayScene(source));
+  const std::vector<char> is_solid = find_solid(grid, source.rays);
   const std::vector<char> is_inside = find_inside(grid, layer_scene);
   std::size_t solid = 0, kept = 0;
   for (std::size_t i = 0; i < grid.count(); ++i)
@@ -189,7 +186,11 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
   std::vector<int> body_of;
   std::vector<Body> bodies =
       connect(grid, find_missing(grid, is_solid, is_inside, layer_scene), body_of);
-  const double area = measure_surface(source, grid, is_solid, body_of, layer_scene, bodies);
+  const double reach = std::max(kReach, kReachShare * box.diagonal());
+  const std::vector<Place> places =
+      look_about(spread_over(source.mesh, grid.size), grid, is_solid, body_of, layer_scene, reach);
+  const double unit = grid.size * grid.size, area = unit * static_cast<double>(places.size());
+  measure_bodies(places, grid, unit, bodies);
   std::vector<char> is_lost(bodies.size(), 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
@@ -207,7 +208,7 @@ Holdings weigh_layer(const Mesh& source, const Mesh& layer) {
   }
   std::stable_sort(out.lost.begin(), out.lost.end(),
                    [](const LeftOut& a, const LeftOut& b) { return a.volume > b.volume; });
-  LeftOut missed = find_missed(source, grid, is_solid, body_of, is_lost, layer_scene);
+  LeftOut missed = find_missed(places, unit, reach, is_lost);
   if (missed.share > kLeastMissed) out.lost.push_back(missed);
   return out;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry.h"
+#include "solid.h"
 
 namespace colod {
 
@@ -25,6 +26,6 @@ struct Holdings {
 /// and is farther from the layer than 0.5 m or 2 % of the diagonal: open pieces enclose nothing.
 /// `layer` is closed and looks outward; both in one frame. Deterministic, in parallel; about 0.3 s
 /// on one core.
-Holdings weigh_layer(const Mesh& source, const Mesh& layer);
+Holdings weigh_layer(const Surface& source, const Mesh& layer);
 
 }  // namespace colod

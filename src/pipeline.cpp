@@ -347,14 +347,15 @@ void mesh_building(Building& b, const Options& options) {
     }
     keep_chain_sound(b, options);
     Stopwatch watch(b.timings.measure);
-    weigh_finest(b);
-    if (!is_paper(options)) b.failure = judge_building(b);
+    const Surface surface = surface_of(b);
+    weigh_finest(surface, b);
+    if (!is_paper(options)) b.failure = judge_building(surface, b);
     if (!b.failure.empty()) {
       b.layers.clear();
       forget_losses(b);
       return;
     }
-    replace_invented(b);
+    replace_invented(surface, b);
     const DistanceGauge source(b.source, {}, floaters(b.planes));
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, layer);

@@ -16,20 +16,9 @@ namespace {
 
 constexpr double kLevel = 0.5;  // upright component of a roof's normal at least
 
-/// The source's surface without what was taken for floaters.
-Mesh surface_of(const Building& b) {
-  if (!b.source.is_mesh()) return outline_soup(b.planes);
-  Mesh surface{b.source.mesh.vertices, {}};
-  for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
-    if (b.planes.plane_of_item[f] != kFloater) surface.faces.push_back(b.source.mesh.faces[f]);
-  return surface;
-}
-
-/// What may be asked for of it. A cloud's outlines of steep planes are guesses from few points: of
+/// What may be asked for of a cloud. Its outlines of steep planes are guesses from few points: of
 /// 72 airborne clouds they made most of what seemed to be missed.
-Mesh surface_to_keep(const Building& b) {
-  Mesh surface = surface_of(b);
-  if (b.source.is_mesh()) return surface;
+Mesh roofs_of(Mesh surface) {
   std::erase_if(surface.faces, [&](const Face& f) {
     const Vec3 cross = face_cross(surface, f);
     return !(std::abs(cross.z()) > kLevel * cross.norm());
@@ -78,6 +67,14 @@ std::string describe(const LeftOut& l) {
 
 }  // namespace
 
+Surface surface_of(const Building& b) {
+  if (!b.source.is_mesh()) return outline_soup(b.planes);
+  Mesh surface{b.source.mesh.vertices, {}};
+  for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
+    if (b.planes.plane_of_item[f] != kFloater) surface.faces.push_back(b.source.mesh.faces[f]);
+  return surface;
+}
+
 const char* describe(StandIn reason) {
   switch (reason) {
     case StandIn::kNone:
@@ -100,10 +97,12 @@ void forget_losses(Building& b) {
   std::erase_if(b.left_out, [](const LeftOut& l) { return l.reason == LeftOut::Reason::kLost; });
 }
 
-void weigh_finest(Building& b) {
+void weigh_finest(const Surface& source, Building& b) {
   forget_losses(b);
   if (b.layers.empty() || !b.layers.back().failure.empty()) return;
-  const Holdings holdings = weigh_layer(surface_to_keep(b), b.layers.back().mesh.mesh());
+  const Mesh finest = b.layers.back().mesh.mesh();
+  const Holdings holdings =
+      b.source.is_mesh() ? weigh_layer(source, finest) : weigh_layer(roofs_of(source.mesh), finest);
   b.solid = holdings.solid;
   double whole = holdings.whole;
   for (const LeftOut& l : b.left_out) whole += std::max(0.0, l.volume);
@@ -118,13 +117,13 @@ void weigh_finest(Building& b) {
   }
 }
 
-void replace_invented(Building& b) {
+void replace_invented(const Surface& source, Building& b) {
   std::vector<Mesh> meshes;
   std::vector<Layer*> shown;
   for (Layer& layer : b.layers)
     if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
   if (shown.empty()) return;
-  const std::vector<InventedShare> shares = invented_shares(surface_of(b), meshes);
+  const std::vector<InventedShare> shares = invented_shares(source, meshes);
   for (std::size_t i = shown.size(); i-- > 0;) {
     shown[i]->invented = shares[i].share;
     if (!shares[i].is_too_much || i + 1 == shown.size()) continue;
@@ -134,9 +133,9 @@ void replace_invented(Building& b) {
   }
 }
 
-std::string judge_building(const Building& b) {
+std::string judge_building(const Surface& source, const Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return "";
-  const std::string why = judge_scene(survey_layer(surface_of(b), b.layers.back().mesh, b.solid));
+  const std::string why = judge_scene(survey_layer(source, b.layers.back().mesh, b.solid));
   if (why.empty()) return "";
   return b.source.name + ": this looks like a part of a scene: " + why +
          "; nothing is written for it, --rules paper meshes it all the same";

@@ -2,23 +2,27 @@
 #pragma once
 
 #include "pipeline.h"
+#include "solid.h"
 
 namespace colod {
 
+/// The source without what was taken for floaters; of a cloud its planes' outlines.
+Surface surface_of(const Building& building);
+
 /// Adds to `left_out` the bodies of the source that the finest layer does not stand for, and the
-/// shares of the volume; sets `solid`. The finest layer is still in the building's frame. A cloud's
-/// surface is that of its planes' outlines, steep ones apart.
-void weigh_finest(Building& building);
+/// shares of the volume; sets `solid`. The finest layer is still in the building's frame. Of a
+/// cloud's surface steep planes do not count.
+void weigh_finest(const Surface& source, Building& building);
 
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
 /// Measures how much of each layer is invented; where it is too much (scene_part.h) the next finer
 /// layer's mesh stands in.
-void replace_invented(Building& building);
+void replace_invented(const Surface& source, Building& building);
 
 /// Why the finest layer is no building's (scene_part.h); empty: it is one.
-std::string judge_building(const Building& building);
+std::string judge_building(const Surface& source, const Building& building);
 
 /// What happened to a layer whose mesh is another's, as a clause without its name.
 const char* describe(StandIn reason);

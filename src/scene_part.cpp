@@ -22,7 +22,7 @@ namespace {
 constexpr double kLevel = 0.5;         // upright component of a top's normal at least
 constexpr double kReach = 0.5;         // metres from the source, or …
 constexpr double kReachShare = 0.02;   // … of its diagonal: farther is invented
-constexpr double kSamples = 8000;      // of the layer
+constexpr double kSamples = 3000;      // of a layer
 constexpr double kOpenBorder = 0.5;    // of the root of the area: a shorter border is a crack
 constexpr double kGentle_deg = 30;     // between two tops: roofs' ridges mostly bend more
 constexpr double kCoplanar_deg = 0.5;  // no edge at all
@@ -34,6 +34,7 @@ constexpr double kHardlyEnclosed = 0.1;         // of the layer's volume
 constexpr double kThin = 1, kThinShare = 0.08;  // metres, and of the root of the layer's area
 constexpr double kFalseTops = 0.5;              // 72 airborne clouds have 0.3 at most
 constexpr double kFalseSides = 0.3;  // a corner of two walls has 0.46, walls all round have 0
+constexpr std::size_t kGrain = 64;
 constexpr double kRadian_deg = 57.29577951308232;
 
 /// Length of the edges that faces use more often one way than the other.
@@ -70,7 +71,7 @@ void survey_source(const Mesh& source, SceneFacts& facts) {
   facts.is_open = border_length(source) > kOpenBorder * std::sqrt(area);
 }
 
-/// Areas of a layer, and how much of them is farther from the source than `reach`: of tops, of
+/// Samples of a layer, and how many of them are farther from the source than `reach`: of tops, of
 /// sides, and of what looks down.
 struct Invention {
   std::array<double, 3> area{}, far{};
@@ -84,26 +85,29 @@ struct Invention {
 
 Invention measure_invention(const RayScene& source, double reach, const Mesh& layer) {
   const double spacing = std::sqrt(surface_area(layer) / kSamples);
-  std::vector<Invention> of_face(layer.faces.size());
-  parallel_for(layer.faces.size(), [&](std::size_t i) {
-    const Vec3 cross = face_cross(layer, layer.faces[i]);
-    const double z = cross.z() / std::max(1e-300, cross.norm());
-    const int kind = z >= kLevel ? 0 : z > -kLevel ? 1 : 2;
-    sample_face(layer, layer.faces[i], spacing, [&](const Vec3& p, double area) {
-      of_face[i].area[kind] += area;
-      if (source.nearest(p).distance > reach) of_face[i].far[kind] += area;
-    });
+  const std::vector<SurfaceSample> samples = spread_over(layer, spacing);
+  std::vector<char> is_far(samples.size());
+  parallel_ranges(samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const NearestPoint near = source.nearest(samples[i].point, reach);
+      is_far[i] = near.triangle < 0 || near.distance > reach;
+    }
   });
   Invention all;
-  for (const Invention& one : of_face)
-    for (int k = 0; k < 3; ++k) all.area[k] += one.area[k], all.far[k] += one.far[k];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vec3 cross = face_cross(layer, layer.faces[samples[i].face]);
+    const double z = cross.z() / std::max(1e-300, cross.norm());
+    const int kind = z >= kLevel ? 0 : z > -kLevel ? 1 : 2;
+    all.area[kind] += 1;
+    all.far[kind] += is_far[i];
+  }
   return all;
 }
 
 bool is_invented(double tops, double sides) { return tops > kFalseTops && sides > kFalseSides; }
 
-double reach_of(const Mesh& source) {
-  return std::max(kReach, kReachShare * bounding_box(source.vertices).diagonal());
+double reach_of(const Surface& source) {
+  return std::max(kReach, kReachShare * bounding_box(source.mesh.vertices).diagonal());
 }
 
 /// How the tops meet.
@@ -137,17 +141,17 @@ void survey_tops(const PolygonMesh& layer, SceneFacts& facts) {
 
 }  // namespace
 
-SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double solid) {
+SceneFacts survey_layer(const Surface& source, const PolygonMesh& finest, double solid) {
   SceneFacts facts;
   const Mesh layer = finest.mesh();
   const double volume = signed_volume(layer), area = surface_area(layer);
   facts.enclosed = volume > 0 ? solid / volume : 0;
   facts.extent = std::sqrt(area);
   facts.thickness = area > 0 ? 2 * volume / area : 0;
-  survey_source(source, facts);
+  survey_source(source.mesh, facts);
   if (!facts.is_open) return facts;
   facts.reach = reach_of(source);
-  const Invention invention = measure_invention(RayScene(source), facts.reach, layer);
+  const Invention invention = measure_invention(source.rays, facts.reach, layer);
   facts.invented = invention.share();
   facts.invented_tops = invention.share(0);
   facts.invented_sides = invention.share(1);
@@ -155,11 +159,10 @@ SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double so
   return facts;
 }
 
-std::vector<InventedShare> invented_shares(const Mesh& source, const std::vector<Mesh>& layers) {
-  const RayScene scene(source);
+std::vector<InventedShare> invented_shares(const Surface& source, const std::vector<Mesh>& layers) {
   std::vector<InventedShare> shares;
   for (const Mesh& layer : layers) {
-    const Invention invention = measure_invention(scene, reach_of(source), layer);
+    const Invention invention = measure_invention(source.rays, reach_of(source), layer);
     shares.push_back({invention.share(), is_invented(invention.share(0), invention.share(1))});
   }
   return shares;

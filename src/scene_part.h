@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry.h"
+#include "solid.h"
 
 namespace colod {
 
@@ -29,7 +30,7 @@ struct SceneFacts {
 /// `source`: the surface of the input, a cloud's as outlines of its planes. `finest` is closed.
 /// `solid`: m³ that the source encloses (lost_bodies.h). Of a closed source nothing else is
 /// measured. In parallel.
-SceneFacts survey_layer(const Mesh& source, const PolygonMesh& finest, double solid);
+SceneFacts survey_layer(const Surface& source, const PolygonMesh& finest, double solid);
 
 /// How much of a layer is invented.
 struct InventedShare {
@@ -40,7 +41,7 @@ struct InventedShare {
 };
 
 /// Of each layer, in parallel.
-std::vector<InventedShare> invented_shares(const Mesh& source, const std::vector<Mesh>& layers);
+std::vector<InventedShare> invented_shares(const Surface& source, const std::vector<Mesh>& layers);
 
 /// Why it looks like a part of a scene, as a clause; empty: it does not.
 ///   terrain: nothing upright, many planar pieces that meet gently, in valleys as often as in

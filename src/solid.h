@@ -2,12 +2,21 @@
 // soup: open below, boxes that overlap, rooms and furniture inside, holes of a scan.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "geometry.h"
 #include "rays.h"
 
 namespace colod {
+
+/// A surface and what answers questions about it.
+struct Surface {
+  Mesh mesh;
+  RayScene rays;
+
+  Surface(Mesh m) : mesh(std::move(m)), rays(mesh) {}
+};
 
 /// Cubes of `size` metres from `origin` on; voxel (x, y, z) has the number (z · ny + y) · nx + x.
 struct VoxelGrid {
