@@ -258,13 +258,23 @@ std::vector<std::string> other_files(const Walk& walk, const std::string& folder
   return others;
 }
 
+/// A link that leads to itself is there, too, though nothing is behind it.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error) || error;
+}
+
+/// Whether a file that is there lies in the folder, too; else that is a finding.
+bool is_held(Walk& walk, const fs::path& path) {
+  if (walk.folder.holds(path)) return true;
+  walk.report("outside", path.string(), "leads out of the folder or nowhere: it is not read");
+  return false;
+}
+
 void check_folder(Walk& walk, const std::string& path) {
   const fs::path tileset = fs::path(path) / "tileset.json";
-  const bool has_tileset = fs::exists(tileset);
-  if (has_tileset && walk.folder.holds(tileset))
-    walk_tileset(walk, tileset.string());
-  else if (has_tileset)
-    walk.report("outside", tileset.string(), "leads out of the folder, and is not read");
+  const bool has_tileset = is_there(tileset);
+  if (has_tileset && is_held(walk, tileset)) walk_tileset(walk, tileset.string());
   const std::vector<std::string> others = other_files(walk, path);
   if (!has_tileset && others.empty())
     throw Error(Stage::kInput, path, "holds neither tileset.json nor a GLB");
@@ -277,7 +287,7 @@ void check_folder(Walk& walk, const std::string& path) {
       walk.scope.add(content.rows, file);
     });
   if (const fs::path lods = fs::path(path) / "engine" / "lods.json";
-      fs::exists(lods) && walk.folder.holds(lods))
+      is_there(lods) && is_held(walk, lods))
     guard(walk, lods.string(),
           [&] { check_lods(read_regular(lods), lods.string(), walk.scope, walk.findings); });
 }
@@ -292,8 +302,10 @@ void check_tileset(const std::string& path, std::vector<Finding>& findings) {
 
 std::vector<Finding> check_output(const std::string& path) {
   std::vector<Finding> findings;
-  if (!fs::exists(path)) throw Error(Stage::kInput, path, "no such file");
-  if (fs::is_directory(path)) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw Error(Stage::kInput, path, error ? error.message() : "no such file");
+  if (fs::is_directory(path, error)) {
     Walk walk{findings, CheckedFolder(path), {}, 0, {}, {}};
     check_folder(walk, path);
     walk.scope.report(findings);

@@ -52,7 +52,12 @@ View read_view(CheckedGlb& glb, const Json& index) {
   return {slice(glb, view), whole_number_of(view, "byteStride")};
 }
 
-std::size_t size_of(int type) { return type <= 5121 ? 1 : type <= 5123 ? 2 : 4; }
+/// Throws std::out_of_range for what is no component type.
+std::size_t size_of(std::size_t type) {
+  if (type < 5120 || type > 5126 || type == 5124)
+    throw std::out_of_range("an accessor's component type is none of glTF's");
+  return type <= 5121 ? 1 : type <= 5123 ? 2 : 4;
+}
 
 }  // namespace
 
@@ -135,8 +140,9 @@ std::vector<double> read_accessor(CheckedGlb& glb, const Json& accessor, std::si
   const std::size_t count = whole_number(accessor.at("count"));
   glb.spend(count);
   const View view = read_view(glb, accessor.at("bufferView"));
-  const int type = static_cast<int>(whole_number(accessor.at("componentType")));
-  const std::size_t size = size_of(type), tight = size * components;
+  const std::size_t stated = whole_number(accessor.at("componentType"));
+  const std::size_t size = size_of(stated), tight = size * components;
+  const int type = static_cast<int>(stated);
   const std::size_t stride = view.stride ? view.stride : tight, room = view.bytes.size();
   const std::size_t offset = whole_number_of(accessor, "byteOffset");
   if (count == 0 || stride < tight || tight > room || offset > room - tight ||

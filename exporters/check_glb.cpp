@@ -186,15 +186,14 @@ void check_features(Glb& glb, const Json& primitive, const std::string& place,
   const Json& ids = features.at("featureIds").at(0);
   const std::size_t count = whole_number(ids.at("featureCount"));
   if (mesh.features.size() != mesh.positions.size())
-    glb.report("features", place, "no feature id for every vertex");
+    return glb.report("features", place, "no feature id for every vertex");
   if (std::any_of(mesh.features.begin(), mesh.features.end(),
                   [&](std::uint32_t id) { return id >= count; }))
     glb.report("features", place, "a feature id reaches beyond featureCount");
   if (ids.contains("propertyTable") && count > rows)
     glb.report("features", place, "more features than rows in the property table");
   for (const Face& f : mesh.faces)
-    if (!mesh.features.empty() && (mesh.features[f[0]] != mesh.features[f[1]] ||
-                                   mesh.features[f[0]] != mesh.features[f[2]])) {
+    if (mesh.features[f[0]] != mesh.features[f[1]] || mesh.features[f[0]] != mesh.features[f[2]]) {
       glb.report("features", place, "a face belongs to two features");
       return;
     }

@@ -38,6 +38,7 @@ class Contraction {
   explicit Contraction(PolygonMesh& mesh) : mesh_(mesh), triangles_of_(mesh.vertices.size()) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (const int v : mesh.triangles[t]) triangles_of_[v].push_back(static_cast<int>(t));
+    for (const Face& f : mesh.triangles) boxes_.push_back(box_of(f));
     is_gone_.assign(mesh.triangles.size(), 0);
     target_.resize(mesh.vertices.size());
     for (std::size_t v = 0; v < target_.size(); ++v) target_[v] = static_cast<int>(v);
@@ -65,6 +66,7 @@ class Contraction {
     }
     for (const int t : moved) {
       std::replace(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), from, to);
+      boxes_[t] = box_of(mesh_.triangles[t]);
       triangles_of_[to].push_back(t);
     }
     triangles_of_[from].clear();
@@ -93,7 +95,7 @@ class Contraction {
     const Box box = box_of(f);
     for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
       const auto is_t = [t](int i) { return i == t; };
-      const Box other = box_of(mesh_.triangles[t]);
+      const Box& other = boxes_[t];
       const bool is_near = !is_gone_[t] && (box.min.array() <= other.max.array()).all() &&
                            (other.min.array() <= box.max.array()).all();
       if (!is_near || std::any_of(shared.begin(), shared.end(), is_t) ||
@@ -138,6 +140,7 @@ class Contraction {
 
   PolygonMesh& mesh_;
   std::vector<std::vector<int>> triangles_of_;
+  std::vector<Box> boxes_;  ///< of the triangles
   std::vector<char> is_gone_;
   std::vector<int> target_;
 };

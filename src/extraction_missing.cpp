@@ -97,7 +97,7 @@ class Joiner {
   Extraction run(std::vector<int>& layer) {
     Extraction best = extract_layer(planes_, layer, sight_, options_);
     std::optional<double> distance;
-    for (int trial = 0; trial < kTrials; ++trial) {
+    for (int trial = 0; trial < kTrials && !is_spent(sight_); ++trial) {
       const int chosen = most_missed(best);
       if (chosen < 0) break;
       is_tried_[chosen] = 1;

@@ -33,12 +33,12 @@ RawFile read_raw(const std::string& path, const ReadOptions& options) {
   if (!mesh_io::is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
   std::string bytes = mesh_io::read_bytes(path, options.input_memory);
   if (e == ".stl") return mesh_io::read_stl(path, bytes);
-  if (e == ".glb") return mesh_io::read_gltf(path, bytes, options.coarser);
+  if (e == ".glb") return mesh_io::read_gltf(path, bytes, options);
   bytes = mesh_io::as_text(std::move(bytes));
   if (e == ".obj") return mesh_io::read_obj(path, bytes);
   if (e == ".ply") return mesh_io::read_ply(path, bytes);
   if (e == ".off") return mesh_io::read_off(path, bytes);
-  if (e == ".gltf") return mesh_io::read_gltf(path, bytes, options.coarser);
+  if (e == ".gltf") return mesh_io::read_gltf(path, bytes, options);
   return mesh_io::read_points(path, bytes, e == ".pwn");
 }
 
@@ -68,12 +68,16 @@ void check_indices(const std::string& path, const RawFile& raw) {
 }
 
 Vec3 to_z_up(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
+Vec3 to_y_up(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
 
 /// Units, axes and origin; normals made unit length. Unusable points stay as they are.
 void place(RawFile& raw, const mesh_io::Reading& how) {
-  for (Vec3& p : raw.points) p = (how.is_y_up ? to_z_up(p) : p) * how.unit + raw.origin;
+  const auto turned = [&](const Vec3& p) {
+    return how.is_y_up ? to_z_up(p) : how.is_turned_back ? to_y_up(p) : p;
+  };
+  for (Vec3& p : raw.points) p = turned(p) * how.unit + raw.origin;
   for (Vec3& n : raw.normals) {
-    if (how.is_y_up) n = to_z_up(n);
+    n = turned(n);
     const double length = n.norm();
     n = length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(Vec3::Zero());
   }

@@ -27,11 +27,13 @@ enum class Up {
 struct ReadOptions {
   Split split = Split::kAuto;  ///< auto: by overlap, nesting and names of glTF nodes, OBJ objects
                                ///< and groups, and bodies that stand apart; see docs/options.md
-  Up up = Up::kUnsaid;         ///< glTF is always y up and turned by itself
+  Up up = Up::kUnsaid;         ///< glTF is y up and turned by itself; kUnsaid and kAuto doubt it
+                               ///< where its content seems to be z up
   std::optional<double> unit =
       std::nullopt;            ///< metres per unit of the file, of glTF too; none: metres, with a
                                ///< warning where the size of what stands there tells otherwise
-  double input_memory = 2048;  ///< MiB that one file may take; checked before it is read
+  double input_memory = 2048;  ///< MiB that one file may take, with those that it names; checked
+                               ///< before they are read
   bool is_recursive = false;   ///< folders with their subfolders
   int coarser = 0;  ///< glTF: that many levels of MSFT_lod down from the finest; an error
                     ///< where there are fewer

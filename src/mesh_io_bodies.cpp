@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 namespace colod::mesh_io {
 
@@ -142,17 +143,21 @@ std::vector<Vec2> plan_hull(const std::vector<Vec3>& points, const std::vector<F
   return hull;
 }
 
-/// Metres between the nearest two upright planes that hold the body.
+/// Metres between the nearest two upright planes that hold the body: rotating calipers (Shamos,
+/// 1978), so that round bodies of many corners take no longer. The corner farthest from an edge
+/// never lies before the one of the edge before.
 double least_width(const std::vector<Vec2>& hull) {
+  const std::size_t n = hull.size();
   double least = INFINITY;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Vec2 along = (hull[(i + 1) % hull.size()] - hull[i]).normalized();
-    double width = 0;
-    for (const Vec2& p : hull) {
-      const Vec2 to = p - hull[i];
-      width = std::max(width, std::abs(along.x() * to.y() - along.y() * to.x()));
-    }
-    least = std::min(least, width);
+  for (std::size_t i = 0, far = 1; i < n; ++i) {
+    const Vec2 along = (hull[(i + 1) % n] - hull[i]).normalized();
+    const auto width = [&](std::size_t corner) {
+      const Vec2 to = hull[corner % n] - hull[i];
+      return std::abs(along.x() * to.y() - along.y() * to.x());
+    };
+    far = std::max(far, i + 1);
+    while (far < i + n && width(far + 1) >= width(far)) ++far;
+    least = std::min(least, std::max(width(far), width(far + n - 1)));
   }
   return std::isfinite(least) ? least : 0;
 }
@@ -193,7 +198,7 @@ std::vector<Contact> find_contacts(const std::vector<Body>& bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (const std::uint64_t cell : bodies[b].cells) all.emplace_back(cell, static_cast<int>(b));
   std::sort(all.begin(), all.end());
-  std::vector<std::pair<int, int>> pairs;
+  std::unordered_map<std::uint64_t, int> cells_of_pair;  // many cells, few pairs
   std::vector<int> here;
   for (std::size_t i = 0; i < all.size();) {
     here.clear();
@@ -203,15 +208,15 @@ std::vector<Contact> find_contacts(const std::vector<Body>& bodies) {
                      [&](int a, int b) { return bodies[a].cells.size() > bodies[b].cells.size(); });
     for (std::size_t j = 0; j < std::min(here.size(), kLargest); ++j)
       for (std::size_t k = j + 1; k < here.size(); ++k)
-        pairs.push_back(std::minmax(here[j], here[k]));
+        ++cells_of_pair[static_cast<std::uint64_t>(std::min(here[j], here[k])) << 32 |
+                        static_cast<std::uint64_t>(std::max(here[j], here[k]))];
   }
-  std::sort(pairs.begin(), pairs.end());
   std::vector<Contact> contacts;
-  for (const auto& [a, b] : pairs) {
-    if (contacts.empty() || contacts.back().a != a || contacts.back().b != b)
-      contacts.push_back({a, b, 0});
-    ++contacts.back().cells;
-  }
+  for (const auto& [pair, cells] : cells_of_pair)
+    contacts.push_back({static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), cells});
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  });
   return contacts;
 }
 

@@ -78,9 +78,19 @@ bool is_report(const fs::path& path) {
   return fs::is_regular_file(path, error) && head(path).find("\"colod\":") != std::string::npos;
 }
 
+/// A folder of levels for engines, wherever it was copied to: by what its list says of itself.
+bool is_engine_export(const fs::path& folder) {
+  std::error_code error;
+  const fs::path list = folder / "lods.json";
+  return fs::is_regular_file(list, error) &&
+         head(list).find("LOD0 is the finest. A level is shown from switch_distance") !=
+             std::string::npos;
+}
+
 /// A folder of buildings, tiles or engine files that colod build wrote.
 bool is_part_of_output(const fs::path& folder) {
   std::error_code error;
+  if (is_engine_export(folder)) return true;
   const fs::path whole = fs::weakly_canonical(folder, error);
   const std::string name = whole.filename().string();
   const bool is_part = name == "buildings" || name == "tiles" || name == "engine";

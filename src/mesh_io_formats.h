@@ -28,8 +28,8 @@ struct RawFile {
   bool has_doubtful_normals = false;  ///< perhaps colours: kept where the surface agrees
   std::string remarks;                ///< comments at the file's head: which program wrote it
   bool is_soup = false;               ///< faces share no points (STL, glTF): weld equal ones
-  bool is_turned = false;      ///< already z up whatever ReadOptions says (glTF turns itself)
-  Vec3 origin = Vec3::Zero();  ///< metres, added after units and axes (our own GLBs' extras)
+  bool is_turned = false;             ///< already z up (glTF turns itself)
+  Vec3 origin = Vec3::Zero();         ///< metres, added after units and axes (our own GLBs' extras)
 
   int face_count() const { return static_cast<int>(face_begin.size()); }
   int face_end(int f) const {
@@ -86,7 +86,8 @@ RawFile read_off(const std::string& path, const std::string& bytes);
 RawFile read_stl(const std::string& path, const std::string& bytes);
 RawFile read_points(const std::string& path, const std::string& bytes, bool is_pwn);
 RawFile read_ply(const std::string& path, const std::string& bytes);
-RawFile read_gltf(const std::string& path, const std::string& bytes, int coarser);
+/// `options` say which level is read, and what it and the files beside it may take.
+RawFile read_gltf(const std::string& path, const std::string& bytes, const ReadOptions& options);
 
 /// Do twenty lines of at least three numbers stand at the head of a text? For files whose names end
 /// in .asc, .csv or .txt, which may hold anything.
@@ -114,8 +115,9 @@ void leave_out_strays(Source& s);
 
 /// How a file is to be read, and what is doubtful about that.
 struct Reading {
-  bool is_y_up = false;
-  double unit = 1;  ///< metres
+  bool is_y_up = false;         ///< the axes as the reader gives them are to be turned
+  bool is_turned_back = false;  ///< a glTF whose content is z up, whatever the format says
+  double unit = 1;              ///< metres
   std::vector<std::string> doubts;
 };
 

@@ -43,8 +43,8 @@ bool is_hidden(const tinygltf::Node& node) {
 /// accessor.
 class SceneReader {
  public:
-  SceneReader(const std::string& path, GltfDocument& document)
-      : gltf_(path, document.model),
+  SceneReader(const std::string& path, GltfDocument& document, double input_memory)
+      : gltf_(path, document.model, input_memory),
         model_(document.model),
         warnings_(document.warnings),
         is_visited_(model_.nodes.size(), 0),
@@ -284,10 +284,10 @@ RawFile SceneReader::read(int coarser) {
 
 }  // namespace
 
-RawFile read_gltf(const std::string& path, const std::string& bytes, int coarser) {
+RawFile read_gltf(const std::string& path, const std::string& bytes, const ReadOptions& options) {
   try {
-    GltfDocument document = open_gltf(path, bytes);
-    return SceneReader(path, document).read(coarser);
+    GltfDocument document = open_gltf(path, bytes, options.input_memory);
+    return SceneReader(path, document, options.input_memory).read(options.coarser);
   } catch (const nlohmann::json::exception& e) {  // a member of another type than the format's
     fail(path, std::string("glTF: ") + e.what());
   }

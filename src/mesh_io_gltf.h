@@ -18,9 +18,10 @@ struct GltfDocument {
   std::vector<std::string> warnings;
 };
 
-/// Buffers lie in the file, in `data:` URIs, or in files at or below its folder. Throws
-/// Error{kInput}, also where the file needs an extension that is not read.
-GltfDocument open_gltf(const std::string& path, std::string_view bytes);
+/// Buffers lie in the file, in `data:` URIs, or in files at or below its folder, which take at most
+/// `input_memory` MiB with it. Throws Error{kInput}, also where the file needs an extension that is
+/// not read.
+GltfDocument open_gltf(const std::string& path, std::string_view bytes, double input_memory);
 
 /// nullptr: there is none of that name.
 const tinygltf::Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* name);
@@ -35,7 +36,7 @@ struct GltfPrimitive {
 /// counts as they are written. All methods throw Error{kInput}.
 class GltfReader {
  public:
-  GltfReader(const std::string& path, const tinygltf::Model& model);
+  GltfReader(const std::string& path, const tinygltf::Model& model, double input_memory);
 
   [[noreturn]] void fail(const std::string& cause) const;
   const tinygltf::Model& model() const { return model_; }
@@ -58,7 +59,8 @@ class GltfReader {
   GltfPrimitive primitive(const tinygltf::Primitive& primitive) const;
 
   /// Counts what is placed. A file may hold few bytes and say that they stand in many places: it
-  /// fails where that comes to more than 12 million corners beyond what its bytes could hold.
+  /// fails where that comes to more corners than `input_memory` has room for, beyond what its bytes
+  /// could hold.
   void spend(std::size_t points_and_corners);
 
  private:
@@ -78,7 +80,7 @@ class GltfReader {
 
   const std::string& path_;
   const tinygltf::Model& model_;
-  std::size_t budget_ = 0;
+  std::size_t free_corners_, budget_;
 };
 
 }  // namespace colod::mesh_io

@@ -17,9 +17,9 @@ namespace colod::mesh_io {
 
 namespace {
 
-constexpr std::size_t kFreeCorners = 12'000'000;  // 4 million triangles, some 1 GiB in all rooms
-constexpr std::size_t kCornersPerByte = 16;       // Draco's best is about 10
-constexpr std::size_t kMeshoptGain = 64;  // 16 bytes may take 2 bits: no stream unpacks to more
+constexpr double kFreeCorners = 6000;        // a MiB: all rooms take some 100 bytes a corner
+constexpr std::size_t kCornersPerByte = 16;  // Draco's best is about 10
+constexpr std::size_t kMeshoptGain = 64;     // 16 bytes may take 2 bits: no stream unpacks to more
 constexpr double kMostExact = 9007199254740992;  // 2^53
 
 using tinygltf::Value;
@@ -112,8 +112,11 @@ const Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* 
   return found == extensions.end() ? nullptr : &found->second;
 }
 
-GltfReader::GltfReader(const std::string& path, const tinygltf::Model& model)
-    : path_(path), model_(model), budget_(kFreeCorners) {
+GltfReader::GltfReader(const std::string& path, const tinygltf::Model& model, double input_memory)
+    : path_(path),
+      model_(model),
+      free_corners_(static_cast<std::size_t>(kFreeCorners * input_memory)),
+      budget_(free_corners_) {
   for (const tinygltf::Buffer& buffer : model.buffers)
     budget_ += kCornersPerByte * buffer.data.size();
 }
@@ -143,8 +146,8 @@ std::vector<double> GltfReader::numbers(const Value& object, const char* key) co
 void GltfReader::spend(std::size_t points_and_corners) {
   if (points_and_corners > budget_)
     fail("its meshes stand in so many places that they come to over " +
-         std::to_string(kFreeCorners / 1'000'000) +
-         " million corners: place fewer, or split the file");
+         std::to_string(free_corners_) +
+         " corners, more than --input-memory allows: place fewer, or split the file");
   budget_ -= points_and_corners;
 }
 

@@ -26,7 +26,6 @@ constexpr int kDeepestJson = 256;  // no writer nests deeper; lists of lists exh
 constexpr std::size_t kMostObjects = 4'000'000;  // half a million buildings; some 700 bytes each
 constexpr std::size_t kMostValues = 10 * kMostObjects;  // some 150 bytes each
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;  // of all files beside one
 constexpr const char* kDataUri = "data:application/octet-stream;base64,";
 
 /// The lists that shapes are made of. Others are kept from tinygltf: it would open the files of
@@ -121,8 +120,10 @@ Chunks take_apart(const std::string& path, std::string_view bytes) {
 /// Error{kInput} through tinygltf, which holds nothing then that needs to be given back.
 struct Beside {
   const std::string& path;
+  double input_memory;               // MiB
+  std::size_t bytes;                 // read so far, those of the file itself included
   std::vector<std::size_t> lengths;  // of the buffers in files, in the order of reading
-  std::size_t files = 0, bytes = 0;  // read so far
+  std::size_t files = 0;             // read so far
 };
 
 fs::path folder_of(const std::string& path) { return fs::absolute(path).parent_path(); }
@@ -157,7 +158,10 @@ bool read_beside(std::vector<unsigned char>* out, std::string*, const std::strin
   const std::size_t size =
       std::min<std::uintmax_t>(fs::file_size(file), beside.lengths.at(beside.files++));
   beside.bytes += size;
-  if (beside.bytes > kMostBytes) fail(beside.path, "names files larger than 2 GiB");
+  if (static_cast<double>(beside.bytes) > beside.input_memory * 1048576)
+    fail(beside.path, "takes " + std::to_string((beside.bytes >> 20) + 1) +
+                          " MiB with the files that it names, more than --input-memory " +
+                          std::to_string(std::llround(beside.input_memory)) + " allows one file");
   out->resize(size);
   std::ifstream in(file, std::ios::binary);
   in.read(reinterpret_cast<char*>(out->data()), static_cast<std::streamsize>(size));
@@ -326,7 +330,7 @@ tinygltf::Model load(const std::string& path, const std::string& text, std::stri
 
 }  // namespace
 
-GltfDocument open_gltf(const std::string& path, std::string_view bytes) {
+GltfDocument open_gltf(const std::string& path, std::string_view bytes, double input_memory) {
   const Chunks chunks = take_apart(path, bytes);
   check_json(path, chunks.json);
   Json json = Json::parse(chunks.json, keep_value, false);
@@ -340,7 +344,7 @@ GltfDocument open_gltf(const std::string& path, std::string_view bytes) {
   json = drop_shapeless(std::move(json));
   check_sizes(path, json);
   drop_draco_indices(json);
-  Beside beside{path, {}};
+  Beside beside{path, input_memory, bytes.size(), {}};
   settle_buffers(path, !chunks.binary.empty(), json, beside);
   document.model = load(path, json.dump(), chunks.binary, beside);
   return document;

@@ -116,11 +116,26 @@ int slopes_say_y(const Facts& facts) {
   return is_contradicted(facts, 1, 2) ? -1 : 0;
 }
 
+/// glTF is y up by its format, and was turned by that; some converters write z up all the same.
+/// Returns the axis that seems to be up, 1 or 2, of what was turned.
+int judge_turned_axis(const Facts& facts, const ReadOptions& options, Reading& how) {
+  if (options.up == Up::kY || options.up == Up::kZ || slopes_say_y(facts) <= 0) return 2;
+  const std::string why =
+      "read y up, as glTF is, a large part of its faces hangs over; read z up, next to none does";
+  how.is_turned_back = options.up == Up::kAuto;
+  how.doubts.push_back(how.is_turned_back
+                           ? "taken as z up: " + why + "; --up y reads it as it stands"
+                           : "looks z up, so that it lies on its side: " + why +
+                                 "; --up auto turns it, --up y says that it is right");
+  return 1;
+}
+
 /// Returns the axis that seems to be up, 1 or 2.
 int judge_axis(const std::string& path, const RawFile& raw, const Facts& facts,
                const ReadOptions& options, Reading& how) {
-  how.is_y_up = options.up == Up::kY && !raw.is_turned;
-  if (raw.is_turned || options.up == Up::kY || options.up == Up::kZ) return how.is_y_up ? 1 : 2;
+  if (raw.is_turned) return judge_turned_axis(facts, options, how);
+  how.is_y_up = options.up == Up::kY;
+  if (options.up == Up::kY || options.up == Up::kZ) return how.is_y_up ? 1 : 2;
   const int slopes = slopes_say_y(facts);
   const std::string writer = y_up_writer(path, raw);
   if (slopes < 0 || (slopes == 0 && writer.empty())) return 2;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh_io_alternatives.h"
 #include "mesh_io_bodies.h"
 #include "mesh_io_join.h"
 #include "union_find.h"
@@ -159,6 +160,7 @@ class Splitter {
  private:
   std::vector<Body> describe(const std::vector<std::vector<int>>& lists) const;
   void drop_coarser_levels(Labels& labels);
+  void drop_alternatives(Labels& labels);
   Labels join(const Labels& labels, std::vector<char>& has_building) const;
   Parting by_objects();
   Parting by_groups();
@@ -221,6 +223,30 @@ void Splitter::drop_coarser_levels(Labels& labels) {
       "' is the finest (--split object or none takes them all)");
 }
 
+/// Of labels on one place that show the same thing, whatever their names, the one with the most
+/// triangles stays.
+void Splitter::drop_alternatives(Labels& labels) {
+  const auto lists = triangles_of(labels.of_triangle, labels.names.size());
+  const std::vector<Body> bodies = describe(lists);
+  std::vector<char> is_dropped(bodies.size(), 0);
+  std::string kept;
+  for (const Contact& c : find_contacts(bodies)) {
+    const auto [coarse, fine] =
+        lists[c.a].size() < lists[c.b].size() ? std::pair(c.a, c.b) : std::pair(c.b, c.a);
+    if (is_dropped[coarse] || !covers(bodies, c) ||
+        !is_coarser_alternative(raw_.points, all_.faces, lists[coarse], lists[fine]))
+      continue;
+    is_dropped[coarse] = 1;
+    if (kept.empty()) kept = labels.names[fine];
+  }
+  const auto dropped = std::count(is_dropped.begin(), is_dropped.end(), 1);
+  if (dropped == 0) return;
+  for (int& label : labels.of_triangle)
+    if (label >= 0 && is_dropped[label]) label = -1;
+  say(std::to_string(dropped) + " parts show what finer ones on their place show, as '" + kept +
+      "', and are left out (--split object or none takes them all)");
+}
+
 /// Labels that are one building become one, named after the one of the largest area.
 Labels Splitter::join(const Labels& labels, std::vector<char>& has_building) const {
   const std::vector<Body> bodies = describe(triangles_of(labels.of_triangle, labels.names.size()));
@@ -247,6 +273,7 @@ Labels Splitter::join(const Labels& labels, std::vector<char>& has_building) con
 Parting Splitter::by_objects() {
   Labels labels = object_labels(raw_, all_);
   drop_coarser_levels(labels);
+  drop_alternatives(labels);
   fold(raw_, labels);
   const Parting apart = part_by(labels);
   if (apart.parts.size() < 2) return apart;

@@ -13,10 +13,12 @@ namespace colod::mesh_io {
 
 namespace {
 
-constexpr double kLeastGap = 100;        // metres; nothing nearer is ever a stray
-constexpr double kFar = 20;              // times the main leaf's diagonal, for pieces of their own
-constexpr double kFarConnected = 200;    // for what faces connect: no wall and no spire is so long
-constexpr double kSmall = 0.02;          // of the main leaf's surface
+constexpr double kLeastGap = 100;      // metres; nothing nearer is ever a stray
+constexpr double kFar = 20;            // times the main leaf's diagonal, for pieces of their own
+constexpr double kFarConnected = 200;  // for what faces connect: no wall and no spire is so long
+constexpr double kSmall = 0.02;        // of the main leaf's surface …
+constexpr double kAbsurd = 1000;  // … and, so many diagonals away, where no scene reaches, …
+constexpr double kSmallAbsurd = 0.25;  // … a large triangle left at 0,0,0 of projected coordinates
 constexpr double kSmallOfPoints = 0.01;  // of its points: more than noise of a scan
 constexpr int kBins = 4096;
 constexpr std::size_t kMostLeaves = 1000;
@@ -94,11 +96,13 @@ class Judge {
     measure();
     main_ = static_cast<int>(std::max_element(weight_.begin(), weight_.end()) - weight_.begin());
     if (!(weight_[main_] > 0)) return {};
-    is_far_.assign(weight_.size(), 0);
-    for (std::size_t l = 0; l < is_far_.size(); ++l)
-      is_far_[l] = distance(static_cast<int>(l)) >= reach(kFar);
+    is_far_.assign(weight_.size(), 1);
+    keep_nearer(kFar);
     keep_connected();
-    if (!is_small()) return {};
+    if (!is_small(kSmall)) {
+      keep_nearer(kAbsurd);
+      if (!is_small(kSmallAbsurd)) return {};
+    }
     std::vector<char> is_stray(points_.size(), 0);
     for (std::size_t i = 0; i < leaf_.size(); ++i) is_stray[i] = is_far(static_cast<int>(i));
     const bool is_any = std::find(is_stray.begin(), is_stray.end(), 1) != is_stray.end();
@@ -121,6 +125,12 @@ class Judge {
         weight_[leaf_[f[0]]] += area_of(points_, f);
   }
 
+  /// What lies nearer than so many diagonals is not far.
+  void keep_nearer(double times) {
+    for (std::size_t l = 0; l < is_far_.size(); ++l)
+      if (distance(static_cast<int>(l)) < reach(times)) is_far_[l] = 0;
+  }
+
   /// A face that leads to a far leaf makes it a part of the building, unless it is a sliver that no
   /// building has.
   void keep_connected() {
@@ -134,14 +144,14 @@ class Judge {
     }
   }
 
-  /// All that is far together, faces between far leaves included.
-  bool is_small() const {
+  /// All that is far together, faces between far leaves included: of the main leaf's surface.
+  bool is_small(double most) const {
     double far = 0;
     for (const Face& f : faces_)
       if (is_far(f[0]) && is_far(f[1]) && is_far(f[2])) far += area_of(points_, f);
     for (std::size_t l = 0; l < is_far_.size() && faces_.empty(); ++l)
       if (is_far_[l]) far += weight_[l];
-    return far <= (faces_.empty() ? kSmallOfPoints : kSmall) * weight_[main_];
+    return far <= (faces_.empty() ? kSmallOfPoints : most) * weight_[main_];
   }
 
   const std::vector<Vec3>& points_;

@@ -172,7 +172,7 @@ int obj_corner(Lines& lines, std::string_view token, int points) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), i);
   if (error != std::errc() || end != token.data() + token.size() || i == 0)
     lines.fail("'" + std::string(token.substr(0, 40)) + "' is not a vertex index");
-  if (i < 0 && -i > points) lines.fail("a face counts back beyond the first vertex");
+  if (i < -points) lines.fail("a face counts back beyond the first vertex");
   return i < 0 ? points + i : i - 1;
 }
 

@@ -211,9 +211,11 @@ Partition partition_space(const std::vector<CutPlane>& planes, const Box& box,
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const int plane = partition.cuts[i].plane;
     if (plane < 6 || tree.cut(plane, planes[i], tolerance)) continue;
-    partition.warnings.push_back("the cap of " + std::to_string(options.max_cells) +
-                                 " cells was reached at plane " + std::to_string(i) + " of " +
-                                 std::to_string(planes.size()) + "; the rest are left out");
+    partition.warnings.push_back(
+        "the cap of " + std::to_string(options.max_cells) + " cells was reached: the last " +
+        std::to_string(planes.size() - i) + " of " + std::to_string(planes.size()) +
+        " cuts are left out; a larger --distance or --min-points makes "
+        "fewer planes");
     break;
   }
   tree.measure_cells();

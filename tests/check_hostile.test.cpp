@@ -10,6 +10,7 @@
 #include "../exporters/check_files.h"
 #include "../exporters/glb.h"
 #include "../src/error.h"
+#include "check_helpers.h"
 #include "exporters_helpers.h"
 #include "temporary_folder.h"
 
@@ -20,30 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Codes = std::set<std::string>;
 constexpr Compression kAll[] = {Compression::kNone, Compression::kDraco, Compression::kMeshopt};
-
-Codes codes_of(const std::vector<Finding>& findings) {
-  Codes out;
-  for (const Finding& f : findings) out.insert(f.code);
-  return out;
-}
-
-Codes check(const std::string& bytes) {
-  std::vector<Finding> findings;
-  check_glb(bytes, "x.glb", findings);
-  return codes_of(findings);
-}
-
-std::string packed(const std::string& json, const std::string& binary) {
-  std::string text = json + std::string((4 - json.size() % 4) % 4, ' ');
-  const auto four = [](std::size_t v) {
-    const auto value = static_cast<std::uint32_t>(v);
-    return std::string(reinterpret_cast<const char*>(&value), 4);
-  };
-  return "glTF" + four(2) + four(28 + text.size() + binary.size()) + four(text.size()) + "JSON" +
-         text + four(binary.size()) + std::string("BIN\0", 4) + binary;
-}
 
 Mesh turned(Mesh mesh, double yaw, double roll) {
   const Eigen::Matrix3d rotation =
@@ -180,6 +158,7 @@ TEST_CASE("indices that are no indices, and streams that state what they cannot 
   for (const double index : {std::nan(""), -1.0, -HUGE_VAL, HUGE_VAL, 0.5, 3.0, 1e30})
     CHECK(plain(5126, index).contains("accessor"));
   CHECK(plain(5120, -1).contains("accessor"));
+  for (const int type : {0, 7, 5119, 5124, 5127}) CHECK(plain(type, 0).contains("accessor"));
 
   Glb glb =
       parse_glb(encode_building_glb(street(1)[0], {.compression = Compression::kMeshopt}).bytes);
@@ -189,6 +168,17 @@ TEST_CASE("indices that are no indices, and streams that state what they cannot 
       view["extensions"]["EXT_meshopt_compression"]["count"] = count;
       CHECK(check(packed(glb.json.dump(), glb.binary)).contains("accessor"));
     }
+}
+
+TEST_CASE("feature ids that are fewer than the vertices are told, and none beyond them is read") {
+  for (const int count : {1, 3, 20}) {
+    Glb glb =
+        parse_glb(encode_building_glb(street(1)[0], {.compression = Compression::kNone}).bytes);
+    const Json& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+    REQUIRE(attributes.contains("_FEATURE_ID_0"));
+    glb.json["accessors"][attributes["_FEATURE_ID_0"].get<std::size_t>()]["count"] = count;
+    CHECK(check(packed(glb.json.dump(), glb.binary)).contains("features"));
+  }
 }
 
 TEST_CASE("many meshes on one accessor do not take all memory") {
@@ -255,6 +245,19 @@ TEST_CASE("nothing outside the folder is read, by whatever way it is named") {
   fs::rename(linked / "out/tileset.json", linked / "tileset.json");
   fs::create_symlink(linked / "tileset.json", linked / "out/tileset.json");
   CHECK(linked.codes() == Codes{"outside"});
+}
+
+TEST_CASE("links that lead to themselves are findings, or no input, and end nothing") {
+  const Hostile own(tile(""));
+  fs::remove(own / "out/tileset.json");
+  fs::create_symlink("tileset.json", own / "out/tileset.json");
+  CHECK(own.codes() == Codes{"outside"});
+  const Hostile lods(tile(""));
+  fs::create_directories(lods / "out/engine");
+  fs::create_symlink("lods.json", lods / "out/engine/lods.json");
+  CHECK(lods.codes().contains("outside"));
+  fs::create_symlink("self", lods / "self");
+  CHECK_THROWS_AS(check_output((lods / "self").string()), Error);
 }
 
 TEST_CASE("what is no file is not waited for, and names may be anything") {

@@ -14,20 +14,20 @@ namespace {
 const fs::path kRoot = COLOD_SOURCE_DIR;
 
 /// Rooms in the order in which data flow (src/README.md), then what stands beside or behind them.
-const std::vector<std::string> kRooms = {"geometry",      "error",       "options",
-                                         "parallel",      "stopwatch",   "spread",
-                                         "union_find",    "mesh_io",     "frame",
-                                         "intersections", "rays",        "deviation",
-                                         "face_samples",  "solid",       "lost_bodies",
-                                         "scene_part",    "left_out",    "ground",
-                                         "hidden",        "rounds",      "planes",
-                                         "hollows",       "visibility",  "segments",
-                                         "similarity",    "selection",   "clustering",
-                                         "partition",     "extraction",  "metrics",
-                                         "light_field",   "consistency", "picture_difference",
-                                         "switching",     "synth",       "preview",
-                                         "georeference",  "pipeline",    "publish",
-                                         "report",        "store"};
+const std::vector<std::string> kRooms = {"geometry",     "error",         "options",
+                                         "parallel",     "stopwatch",     "spread",
+                                         "union_find",   "rays",          "mesh_io",
+                                         "frame",        "intersections", "deviation",
+                                         "face_samples", "solid",         "lost_bodies",
+                                         "scene_part",   "left_out",      "ground",
+                                         "hidden",       "rounds",        "planes",
+                                         "hollows",      "visibility",    "segments",
+                                         "similarity",   "selection",     "clustering",
+                                         "partition",    "extraction",    "metrics",
+                                         "light_field",  "consistency",   "picture_difference",
+                                         "switching",    "synth",         "preview",
+                                         "georeference", "pipeline",      "publish",
+                                         "report",       "store"};
 
 struct Include {
   fs::path file;     // relative to the repository

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include "../src/error.h"
@@ -33,6 +34,26 @@ void expect_counts(const PolygonMesh& mesh, std::size_t vertices, std::size_t fa
   CHECK(mesh.vertices.size() == vertices);
   CHECK(mesh.facets.size() == facets);
   CHECK(mesh.triangles.size() == triangles);
+}
+
+/// Triangles with corners anywhere on a grid of that many metres.
+Mesh soup(int triangles, double grid) {
+  Mesh mesh;
+  std::mt19937 random(3);
+  for (int i = 0; i < 3 * triangles; ++i) {
+    Vec3 p;
+    for (double& x : p) x = std::floor(grid * static_cast<double>(random()) * 0x1p-32);
+    mesh.vertices.push_back(p);
+    if (i % 3 == 2) mesh.faces.push_back({i - 2, i - 1, i});
+  }
+  std::erase_if(mesh.faces, [&](const Face& f) { return face_area(mesh, f) == 0; });
+  return mesh;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string all;
+  for (const std::string& l : lines) all += l + "\n";
+  return all;
 }
 
 Mesh without_faces(Mesh mesh, const Vec3& normal) {
@@ -406,6 +427,31 @@ TEST_CASE("one and two threads give the same mesh") {
   CHECK(one.vertices == two.vertices);
   CHECK(one.triangles == two.triangles);
   expect_solid(one, 4 * 64 + 8);
+}
+
+TEST_CASE("planes that make too many cells are bounded, which a warning says") {
+  for (const double grid : {8.0, 64.0}) {
+    const Planes planes = planes_of_mesh(soup(40, grid));
+    for (const int most : {50, 400}) {
+      Sight sight(planes);
+      const Extraction few =
+          extract_layer(planes, all_planes(planes), sight, {.nr = 10, .max_cells = most});
+      INFO(grid << " " << most);
+      CHECK(few.cells <= most);
+      CHECK(check(few.mesh).is_closed);
+      CHECK(joined(few.warnings).find("cap of " + std::to_string(most) + " cells") !=
+            std::string::npos);
+      CHECK(joined(few.warnings).find("--min-points") != std::string::npos);
+    }
+  }
+  const Planes house = planes_of_mesh(gable_house(12, 8, 6, 3));
+  Sight fresh(house), spent(house);
+  spent.cells = std::int64_t{1} << 40;
+  CHECK(extract_layer(house, all_planes(house), fresh).warnings.empty());
+  CHECK(fresh.cells > 0);
+  const Extraction last = extract_layer(house, all_planes(house), spent);
+  expect_solid(last.mesh, 720);
+  CHECK(joined(last.warnings).find("too many cells") != std::string::npos);
 }
 
 TEST_CASE("one wall alone becomes a thin body, no plane is an error") {

@@ -203,6 +203,23 @@ TEST_CASE("a vertex left at 0,0,0 of a model in projected coordinates goes with 
   }
 }
 
+TEST_CASE("a large triangle left at 0,0,0 of projected coordinates is listed as left out") {
+  for (const double size : {0.8, 1.0, 2.0})
+    for (const double side : {1.0, 10.0}) {
+      Mesh house = mapped(
+          kHouse, [&](const Vec3& p) { return Vec3(size * p + Vec3(691000, 5334000, 500)); });
+      house.vertices.insert(house.vertices.end(),
+                            {Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)});
+      house.faces.push_back({10, 11, 12});
+      INFO(size << " " << side);
+      const Source s = only(read_bytes("a.obj", obj_text(house)));
+      CHECK(s.mesh.faces.size() == kHouse.faces.size());
+      REQUIRE(s.left_out.size() == 1);
+      CHECK(s.left_out[0].area == Approx(0.5 * side * side));
+      CHECK(s.left_out[0].farthest > 5e6);
+    }
+}
+
 TEST_CASE("nothing that may belong to a building is a stray") {
   const ReadOptions whole{.split = Split::kNone};  // auto would part the village, too
   Mesh village;                                    // houses of 12 m on 3 km, one of them far off
@@ -252,6 +269,24 @@ TEST_CASE("a model that lies on its side is told by its slopes, whatever its siz
         CHECK_THAT(joined(s.warnings), Contains("taken as y up"));
         CHECK(warnings_of("a.obj", obj_text(house), {.up = Up::kAuto}) == "");
       }
+}
+
+TEST_CASE(
+    "a glTF whose content is z up is told by its slopes, and turned where that is asked for") {
+  const auto glb = [](const Mesh& m) { return glb_bytes(m, R"([{"mesh":0}])", "[0]"); };
+  for (const double size : {0.6, 1.0, 4.0})
+    for (const double angle : {0.0, 0.4, 1.2}) {
+      const Mesh house = turned(gable_house(12 * size, 8 * size, 6 * size, 3 * size), angle);
+      INFO(size << " " << angle);
+      CHECK(warnings_of("a.glb", glb(mapped(house, to_y_up))) == "");
+      CHECK(warnings_of("a.glb", glb(mapped(house, to_y_up)), {.up = Up::kAuto}) == "");
+      CHECK_THAT(warnings_of("a.glb", glb(house)), Contains("--up auto"));
+      CHECK(warnings_of("a.glb", glb(house), {.up = Up::kY}) == "");
+      const Source s = only(read_bytes("a.glb", glb(house), {.up = Up::kAuto}));
+      CHECK_THAT(joined(s.warnings), Contains("taken as z up"));
+      CHECK((bounding_box(s.mesh.vertices).max - bounding_box(house.vertices).max).norm() < 1e-5);
+      CHECK(signed_volume(s.mesh) == Approx(signed_volume(house)).epsilon(1e-5));
+    }
 }
 
 TEST_CASE("a program that writes y up is believed unless the slopes tell otherwise") {

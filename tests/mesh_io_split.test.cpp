@@ -24,6 +24,20 @@ Mesh turned(Mesh m, double angle_deg) {
   return m;
 }
 
+/// The same surface, each triangle in four.
+Mesh quartered(const Mesh& m) {
+  Mesh out;
+  for (const Face& f : m.faces) {
+    const int first = static_cast<int>(out.vertices.size());
+    for (int k = 0; k < 3; ++k) out.vertices.push_back(m.vertices[f[k]]);
+    for (int k = 0; k < 3; ++k)
+      out.vertices.push_back(0.5 * (m.vertices[f[k]] + m.vertices[f[(k + 1) % 3]]));
+    for (const Face& g : {Face{0, 3, 5}, Face{3, 1, 4}, Face{5, 4, 2}, Face{3, 4, 5}})
+      out.faces.push_back({first + g[0], first + g[1], first + g[2]});
+  }
+  return out;
+}
+
 /// Named meshes of one file.
 struct Objects {
   std::string text;
@@ -140,6 +154,35 @@ TEST_CASE("of levels of detail on one place the finest stays") {
   CHECK(names(read_bytes("s.obj", street)) == Names{"s_A", "s_B"});
 }
 
+TEST_CASE("of parts that show the same thing under any names the finest stays, shells are two") {
+  for (const double size : {0.7, 1.0, 5.0})
+    for (const double angle : {0.0, 31.0}) {
+      INFO(size << " " << angle);
+      const auto placed = [&](Mesh m) {
+        for (Vec3& p : m.vertices) p *= size;
+        return turned(m, angle);
+      };
+      const Mesh fine =
+          placed(join(quartered(gable_house(12, 8, 6, 3)), box_mesh({3, 2, 7}, {3.4, 2.4, 9.2})));
+      const Mesh coarse = placed(gable_house(12, 8, 6, 3));
+      const ReadResult r =
+          read_bytes("h.obj", Objects().add("o", "a", coarse).add("o", "b", fine).text);
+      CHECK(names(r) == Names{"h"});
+      CHECK(volume(r) == Approx(signed_volume(fine)));
+      CHECK_THAT(said(r), Contains("finer ones") && Contains("'b'"));
+      // An inner shell 30 cm off is no level, nor is a house as large beside it.
+      Mesh inner = placed(gable_house(12, 8, 6, 3));
+      const Vec3 middle = bounding_box(inner.vertices).center();
+      for (Vec3& p : inner.vertices) p = middle + (1 - 0.075 / size) * (p - middle);
+      const std::string shells = Objects()
+                                     .add("o", "in", inner)
+                                     .add("o", "out", placed(quartered(gable_house(12, 8, 6, 3))))
+                                     .text;
+      CHECK(volume(read_bytes("h.obj", shells)) ==
+            Approx(signed_volume(inner) + signed_volume(coarse)));
+    }
+}
+
 TEST_CASE("names tell levels of detail only where a number follows") {
   using mesh_io::name_without_level;
   CHECK(name_without_level("House_LOD1") == "House");
@@ -208,6 +251,29 @@ TEST_CASE("floaters, lamps, trees and what touches stay with their building") {
   CHECK(names(r) == Names{"a"});
   CHECK(r.sources[0].mesh.faces.size() == m.faces.size());
   CHECK(said(r).empty());
+}
+
+TEST_CASE("round bodies of any number of corners are buildings, and take no square of it") {
+  for (const int corners : {8, 100, 30000}) {
+    Mesh towers;
+    for (const double x : {0.0, 40.0}) {
+      Mesh tower;
+      for (int i = 0; i < corners; ++i)
+        for (const double z : {0.0, 12.0})
+          tower.vertices.emplace_back(x + 6 * std::cos(2 * M_PI * i / corners),
+                                      6 * std::sin(2 * M_PI * i / corners), z);
+      tower.vertices.insert(tower.vertices.end(), {{x, 0, 0}, {x, 0, 12}});
+      for (int i = 0; i < corners; ++i) {
+        const int a = 2 * i, b = 2 * ((i + 1) % corners), foot = 2 * corners;
+        for (const Face& f : {Face{a, b, b + 1}, Face{a, b + 1, a + 1}, Face{b, a, foot},
+                              Face{a + 1, b + 1, foot + 1}})
+          tower.faces.push_back(f);
+      }
+      towers = join(towers, tower);
+    }
+    INFO(corners);
+    CHECK(names(read_bytes("t.obj", obj_text(towers))) == Names{"t", "t_2"});
+  }
 }
 
 TEST_CASE("names that are not Latin stay beside the safe ones") {

@@ -13,8 +13,7 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
            read.up = v == "y" ? Up::kY : v == "auto" ? Up::kAuto : Up::kZ;
          },
          "the files' up axis: z (default, with a warning where it seems to be y), y, or auto, "
-         "which "
-         "decides and says so; glTF is always y")
+         "which decides and says so; glTF is y, and auto turns it where its content is z up")
       ->check(CLI::IsMember({"z", "y", "auto"}));
   app.add_option_function<std::string>(
          "--unit",
@@ -28,8 +27,10 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
          "the files' unit, glTF's too: m (default, with a warning where sizes tell otherwise), cm, "
          "mm, in, ft")
       ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}));
-  app.add_option("--input-memory", read.input_memory,
-                 "MiB that one file may take, checked before it is read; default 2048")
+  app.add_option(
+         "--input-memory", read.input_memory,
+         "MiB that one file may take, with those that it names, checked before they are read; "
+         "default 2048")
       ->check(CLI::Range(1.0, 4095.0));
   app.add_option_function<std::string>(
          "--split",

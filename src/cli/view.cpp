@@ -30,7 +30,8 @@ std::string page_folder() {
 
 /// Serves until the process is interrupted.
 int view(const ViewArguments& a) {
-  if (!fs::is_regular_file(fs::path(a.folder) / "tileset.json"))
+  std::error_code error;  // such as a link that leads to itself
+  if (!fs::is_regular_file(fs::path(a.folder) / "tileset.json", error))
     throw Error(Stage::kInput, a.folder,
                 "holds no tileset.json (colod writes one with --format 3dtiles)");
   ViewServer server(a.folder, page_folder());
