@@ -266,6 +266,11 @@ void cut_half_seen(const std::vector<double>& shares, Source& source) {
   std::vector<char> is_cut;
   for (const double share : shares) is_cut.push_back(share > 0 && share < 1);
   hidden::Pieces pieces = hidden::cut_faces(source.mesh, is_cut, kGrid);
+  if (pieces.left_whole > 0)
+    source.warnings.push_back(
+        std::to_string(pieces.left_whole) +
+        " faces are met by so many others that they were not cut where they are hidden: is this "
+        "one building? --split parts it");
   if (!source.face_object.empty()) {
     std::vector<int> object;
     for (const int f : pieces.face_of) object.push_back(source.face_object[f]);

@@ -28,9 +28,12 @@ struct Segment {
   Vec2 a, b;
 };
 
-constexpr double kTouch = 0.001;             // metres
-constexpr std::size_t kMostPartners = 1000;  // of a face: a triangulation of more takes too long
-constexpr double kSliver = 1e-4;             // metres: pieces narrower than this are rounding
+constexpr double kTouch = 0.001;  // metres
+// Lines may cross each other, so that pieces grow with their square. The outer walls of furnished
+// models have up to 100 lines; hundreds of random triangles that run through each other reach both.
+constexpr std::size_t kMostLines = 400;        // of a face …
+constexpr std::size_t kMostSquares = 1000000;  // … and the sum of their squares over all faces
+constexpr double kSliver = 1e-4;               // metres: pieces narrower than this are rounding
 
 Corners corners(const Mesh& mesh, int face) {
   const Face& f = mesh.faces[face];
@@ -127,7 +130,29 @@ void add_lines(const Flat& flat, const Corners& other, std::vector<Segment>& lin
   if (across.size() == 2) lines.push_back({flat.flatten(across[0]), flat.flatten(across[1])});
 }
 
-Vec2 round_to(double grid, const Vec2& p) { return (p / grid).array().round() * grid; }
+/// The lines of the other faces in a face, rounded, each once.
+std::vector<Segment> find_lines(const Mesh& mesh, int face, const std::vector<int>& partners,
+                                double grid) {
+  const Flat flat(corners(mesh, face));
+  std::vector<Segment> lines, clipped;
+  for (const int p : partners) add_lines(flat, corners(mesh, p), lines);
+  const auto rounded = [&](const Vec2& p) -> Vec2 { return (p / grid).array().round() * grid; };
+  const auto key = [](const Segment& s) {
+    return std::make_tuple(s.a.x(), s.a.y(), s.b.x(), s.b.y());
+  };
+  const auto less = [&](const Segment& s, const Segment& t) { return key(s) < key(t); };
+  for (const Segment& line : lines)
+    if (const std::optional<Segment> s = clip(line, flat.outline())) {
+      Segment r{rounded(s->a), rounded(s->b)};
+      if (std::make_pair(r.b.x(), r.b.y()) < std::make_pair(r.a.x(), r.a.y())) std::swap(r.a, r.b);
+      if (r.a != r.b) clipped.push_back(r);
+    }
+  std::sort(clipped.begin(), clipped.end(), less);
+  clipped.erase(std::unique(clipped.begin(), clipped.end(),
+                            [&](const Segment& s, const Segment& t) { return key(s) == key(t); }),
+                clipped.end());
+  return clipped;
+}
 
 bool is_sliver(const std::array<Vec2, 3>& t) {
   double longest = 0;
@@ -135,22 +160,15 @@ bool is_sliver(const std::array<Vec2, 3>& t) {
   return cross(t[1] - t[0], t[2] - t[0]) < kSliver * longest;
 }
 
-/// The face's pieces, each three corners; none: it stays whole.
-std::vector<Corners> cut_face(const Mesh& mesh, int face, const std::vector<int>& partners,
-                              double grid) {
+/// The face's pieces, each three corners.
+std::vector<Corners> cut_face(const Mesh& mesh, int face, const std::vector<Segment>& lines) {
   const Flat flat(corners(mesh, face));
   const std::array<Vec2, 3> outline = flat.outline();
-  std::vector<Segment> lines;
-  for (const int p : partners) add_lines(flat, corners(mesh, p), lines);
   Delaunay triangulation;
   const auto point = [&](const Vec2& p) { return Kernel::Point_2(p.x(), p.y()); };
   for (int k = 0; k < 3; ++k)
     triangulation.insert_constraint(point(outline[k]), point(outline[(k + 1) % 3]));
-  for (const Segment& line : lines)
-    if (const std::optional<Segment> s = clip(line, outline)) {
-      const Vec2 a = round_to(grid, s->a), b = round_to(grid, s->b);
-      if (a != b) triangulation.insert_constraint(point(a), point(b));
-    }
+  for (const Segment& line : lines) triangulation.insert_constraint(point(line.a), point(line.b));
   std::vector<Corners> pieces;
   for (const auto f : triangulation.finite_face_handles()) {
     std::array<Vec2, 3> t;
@@ -168,12 +186,24 @@ std::vector<Corners> cut_face(const Mesh& mesh, int face, const std::vector<int>
 
 Pieces cut_faces(const Mesh& mesh, const std::vector<char>& is_cut, double grid) {
   const std::vector<std::vector<int>> partners = find_partners(mesh, is_cut);
+  std::vector<std::vector<Segment>> lines(mesh.faces.size());
+  parallel_for(mesh.faces.size(), [&](std::size_t i) {
+    if (!partners[i].empty()) lines[i] = find_lines(mesh, static_cast<int>(i), partners[i], grid);
+  });
+  int left_whole = 0;
+  std::size_t squares = 0;
+  for (std::vector<Segment>& own : lines) {
+    const std::size_t square = own.size() * own.size();
+    if (own.size() > kMostLines || squares + square > kMostSquares)
+      own.clear(), ++left_whole;
+    else
+      squares += square;
+  }
   std::vector<std::vector<Corners>> pieces(mesh.faces.size());
   parallel_for(mesh.faces.size(), [&](std::size_t i) {
-    if (!partners[i].empty() && partners[i].size() <= kMostPartners)
-      pieces[i] = cut_face(mesh, static_cast<int>(i), partners[i], grid);
+    if (!lines[i].empty()) pieces[i] = cut_face(mesh, static_cast<int>(i), lines[i]);
   });
-  Pieces result{{mesh.vertices, {}}, {}};
+  Pieces result{{mesh.vertices, {}}, {}, left_whole};
   std::map<std::tuple<double, double, double>, int> index;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& p = mesh.vertices[v];
