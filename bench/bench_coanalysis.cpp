@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "../src/clustering.h"
-#include "../src/parallel.h"
+#include "coanalysis/clustering.h"
+#include "core/parallel.h"
 #include "generated_scene.h"
 
 using namespace colod;

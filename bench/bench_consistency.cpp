@@ -20,10 +20,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "../src/error.h"
-#include "../src/mesh_io.h"
-#include "../src/parallel.h"
-#include "../src/pipeline.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "pipeline/pipeline.h"
+#include "read/read.h"
 
 using namespace colod;
 using nlohmann::json;

@@ -18,12 +18,12 @@
 #include <map>
 #include <numbers>
 
-#include "../src/error.h"
-#include "../src/mesh_io.h"
-#include "../src/parallel.h"
-#include "../src/pipeline.h"
-#include "../src/preview.h"
-#include "../src/rays.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/rays.h"
+#include "picture/picture.h"
+#include "pipeline/pipeline.h"
+#include "read/read.h"
 
 using namespace colod;
 

@@ -17,11 +17,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "../src/error.h"
-#include "../src/frame.h"
-#include "../src/mesh_io.h"
-#include "../src/parallel.h"
-#include "../src/segments.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "read/frame.h"
+#include "read/read.h"
+#include "segments/segments.h"
 
 using namespace colod;
 using nlohmann::json;

@@ -35,14 +35,14 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "../src/error.h"
-#include "../src/frame.h"
-#include "../src/ground.h"
-#include "../src/light_field.h"
-#include "../src/mesh_io.h"
-#include "../src/metrics.h"
-#include "../src/planes.h"
-#include "../src/spread.h"
+#include "core/error.h"
+#include "core/spread.h"
+#include "measure/light_field.h"
+#include "measure/metrics.h"
+#include "planes/planes.h"
+#include "read/frame.h"
+#include "read/read.h"
+#include "scene/ground.h"
 
 using namespace colod;
 

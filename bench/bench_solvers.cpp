@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "../src/selection_model.h"
+#include "coanalysis/selection_model.h"
 #include "generated_scene.h"
 
 using namespace colod;

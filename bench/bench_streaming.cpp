@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "../src/error.h"
-#include "../src/parallel.h"
+#include "core/error.h"
+#include "core/parallel.h"
 #include "streaming_paths.h"
 #include "streaming_pictures.h"
 #include "streaming_tileset.h"

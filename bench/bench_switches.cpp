@@ -8,10 +8,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "../src/mesh_io.h"
-#include "../src/preview.h"
-#include "../src/rays.h"
-#include "../src/switching_views.h"
+#include "core/rays.h"
+#include "measure/switching_views.h"
+#include "picture/picture.h"
+#include "read/read.h"
 
 using namespace colod;
 

@@ -4,17 +4,17 @@
 //   [--json]
 //
 // FOLDER is what `colod synth` wrote: meshes whose faces carry part numbers (OBJ groups or the PLY
-// property `object`), and truth.json. src/consistency.h says when a part counts as present.
+// property `object`), and truth.json. src/measure/consistency.h says when a part counts as present.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "../src/consistency.h"
-#include "../src/mesh_io.h"
-#include "../src/parallel.h"
-#include "../src/pipeline.h"
+#include "core/parallel.h"
+#include "measure/consistency.h"
+#include "pipeline/pipeline.h"
+#include "read/read.h"
 
 using namespace colod;
 using nlohmann::json;

@@ -1,4 +1,4 @@
-// How fast the engines of room 3 are, and whether they see the same.
+// How fast the engines of room `visibility` are, and whether they see the same.
 //
 //   bench_visibility FILE [--ns N] [--nr N] [--threads N] [--repeat N] [--no-single] [--segments]
 //   [--json]
@@ -21,13 +21,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "../src/error.h"
-#include "../src/frame.h"
-#include "../src/mesh_io.h"
-#include "../src/parallel.h"
-#include "../src/segments.h"
-#include "../src/visibility.h"
-#include "../src/visibility_parts.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "read/frame.h"
+#include "read/read.h"
+#include "segments/segments.h"
+#include "visibility/parts.h"
+#include "visibility/visibility.h"
 
 using namespace colod;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "../src/selection.h"
+#include "coanalysis/selection.h"
 
 namespace colod::bench {
 

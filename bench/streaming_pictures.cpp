@@ -1,4 +1,4 @@
-// Based on: what src/switching_views.cpp draws, from near instead of from infinitely far.
+// Based on: what src/measure/switching_views.cpp draws, from near instead of from infinitely far.
 // Differs: perspective, and several buildings that hide each other.
 #include "streaming_pictures.h"
 
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../src/error.h"
-#include "../src/parallel.h"
+#include "core/error.h"
+#include "core/parallel.h"
 
 namespace colod::bench {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../src/picture_difference.h"
-#include "../src/preview.h"
-#include "../src/rays.h"
+#include "core/rays.h"
+#include "measure/picture_difference.h"
+#include "picture/picture.h"
 #include "streaming_tileset.h"
 
 namespace colod::bench {

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "../exporters/check.h"
-#include "../src/error.h"
+#include "core/error.h"
+#include "exporters/check/check.h"
 
 namespace colod::bench {
 

@@ -1,11 +1,10 @@
-# One static library a room. PRIVATE names what stays behind the room's door.
-function(colod_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE" ${ARGN})
-  list(GET ARG_SOURCES 0 first)
-  if(NOT EXISTS ${CMAKE_SOURCE_DIR}/${first})
-    return()
-  endif()
-  add_library(colod_${name} STATIC ${ARG_SOURCES})
+# The room of the current folder: a static library of its sources. DOORS names the headers that others may include (else <room>.h
+# alone; tests/doors.test.cpp sees to it), LINK what they need with them, PRIVATE what stays behind the doors.
+function(colod_room name)
+  cmake_parse_arguments(ARG "" "" "DOORS;LINK;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  add_library(colod_${name} STATIC ${sources})
+  target_include_directories(colod_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
   target_link_libraries(colod_${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE} colod_flags)
 endfunction()
 
@@ -52,7 +51,7 @@ if(COLOD_SANITIZE)
   add_link_options(-fsanitize=${sanitizers})
 endif()
 
-# tinygltf as a header that src/mesh_io_gltf_tinygltf.cpp compiles: Debian's libdraco exports the
+# tinygltf as a header that src/read/gltf_tinygltf.cpp compiles: Debian's libdraco exports the
 # functions of another version of it, and which library a program takes them from would hang on the
 # order of its link line. Without images, so that stb is not needed.
 add_library(tinygltf_headers INTERFACE)

@@ -1,9 +1,9 @@
 # The page of `colod view`, bundled from npm packages into <build>/viewer, beside the program. Not part of `all`: this target, and
-# nothing else, downloads, and only when src/cli/viewer/package-lock.json has changed.
+# nothing else, downloads, and only when src/viewer/package-lock.json has changed.
 #   cmake --build --preset release --target viewer
-set(viewer_source ${CMAKE_SOURCE_DIR}/src/cli/viewer)
+set(viewer_source ${CMAKE_SOURCE_DIR}/src/viewer)
 set(viewer_work ${CMAKE_BINARY_DIR}/viewer-packages)
-file(GLOB viewer_files CONFIGURE_DEPENDS ${viewer_source}/*)
+file(GLOB viewer_files CONFIGURE_DEPENDS ${viewer_source}/*.js ${viewer_source}/*.mjs ${viewer_source}/*.json ${viewer_source}/*.html ${viewer_source}/*.css)
 file(MAKE_DIRECTORY ${viewer_work})
 add_custom_command(
   OUTPUT ${viewer_work}/node_modules/.package-lock.json

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../src/geometry.h"
+#include "core/geometry.h"
 
 namespace colod {
 

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <mutex>
 
-#include "../src/error.h"
+#include "core/error.h"
 
 namespace colod {
 

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,22 +14,6 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path kRoot = COLOD_SOURCE_DIR;
-
-/// Rooms in the order in which data flow (src/README.md), then what stands beside or behind them.
-const std::vector<std::string> kRooms = {"geometry",     "error",         "options",
-                                         "parallel",     "stopwatch",     "spread",
-                                         "union_find",   "rays",          "mesh_io",
-                                         "frame",        "intersections", "deviation",
-                                         "face_samples", "solid",         "lost_bodies",
-                                         "scene_part",   "left_out",      "ground",
-                                         "hidden",       "rounds",        "planes",
-                                         "hollows",      "visibility",    "segments",
-                                         "similarity",   "selection",     "clustering",
-                                         "partition",    "extraction",    "metrics",
-                                         "light_field",  "consistency",   "picture_difference",
-                                         "switching",    "synth",         "preview",
-                                         "georeference", "pipeline",      "publish",
-                                         "report",       "store"};
 
 struct Include {
   fs::path file;     // relative to the repository
@@ -63,20 +49,33 @@ std::vector<Include> includes(const std::vector<std::string>& folders) {
 /// Includes that match `library` in files that do not match `door`.
 std::vector<std::string> leaks(const std::string& library, const std::string& door) {
   std::vector<std::string> found;
-  for (const Include& i : includes({"src", "exporters", "bench"}))
+  for (const Include& i : includes({"src", "exporters", "synth", "bench"}))
     if (std::regex_search(i.what, std::regex("^" + library)) &&
         !std::regex_match(i.file.string(), std::regex(door)))
       found.push_back(i.file.string() + " includes " + i.what);
   return found;
 }
 
-/// The longest room that a file of src/ belongs to: `planes_noise.cpp` and `planes.h` to planes.
-int room_of(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  int best = -1;
-  for (int r = 0; r < static_cast<int>(kRooms.size()); ++r)
-    if (stem == kRooms[r] || stem.starts_with(kRooms[r] + "_")) best = r;
-  return best;
+/// The rooms of src/ in the order in which data flow, as CMakeLists.txt adds them.
+std::vector<std::string> rooms() {
+  static const std::regex kAdded("foreach\\(room ([a-z_ ]+)\\)");
+  std::smatch found;
+  const std::string text = slurp(kRoot / "CMakeLists.txt");
+  REQUIRE(std::regex_search(text, found, kAdded));
+  std::istringstream words(found[1]);
+  std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
+  for (const char* last : {"publish", "viewer", "cli"}) all.emplace_back(last);
+  return all;
+}
+
+/// The headers of a room that others may include: `DOORS` of its CMakeLists.txt, else its own.
+std::vector<std::string> doors(const std::string& room) {
+  static const std::regex kDoors("DOORS ([a-z0-9_.\\s]+)");
+  std::smatch found;
+  const std::string text = slurp(kRoot / "src" / room / "CMakeLists.txt");
+  if (!std::regex_search(text, found, kDoors)) return {room + ".h"};
+  std::istringstream words(found[1]);
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
 using Leaks = std::vector<std::string>;
@@ -84,40 +83,56 @@ using Leaks = std::vector<std::string>;
 }  // namespace
 
 TEST_CASE("every library stays behind its door") {
-  CHECK(leaks("embree", "src/(rays|visibility)[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("(tbb|oneapi)/", "src/parallel[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("draco/", "exporters/draco\\.cpp|src/mesh_io[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("meshoptimizer", "exporters/meshopt\\.cpp|bench/.*\\.cpp") == Leaks{});
-  CHECK(leaks("tiny_gltf", "src/mesh_io_gltf[a-z_]*\\.(cpp|h)") == Leaks{});  // h: of room 1 only
-  CHECK(leaks("lpsolve/|lp_lib", "src/selection[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("proj(_experimental)?\\.h", "src/georeference[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("pugixml", "src/georeference[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("sqlite3", "src/store[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("png\\.h", "src/preview[a-z_]*\\.cpp|bench/.*\\.cpp") == Leaks{});
-  CHECK(leaks("Spectra/", "src/clustering[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("nanoflann", "src/(clustering|metrics)[a-z_]*\\.cpp") == Leaks{});
-  CHECK(leaks("httplib", "src/cli/view_server\\.cpp") == Leaks{});
+  CHECK(leaks("embree", "src/(core/rays|visibility/[a-z_]+)\\.cpp") == Leaks{});
+  CHECK(leaks("(tbb|oneapi)/", "src/core/parallel\\.cpp") == Leaks{});
+  CHECK(leaks("draco/", "exporters/gltf/draco\\.cpp|src/read/[a-z_]+\\.cpp") == Leaks{});
+  CHECK(leaks("meshoptimizer", "src/core/meshopt\\.cpp|bench/.*\\.cpp") == Leaks{});
+  CHECK(leaks("tiny_gltf", "src/read/gltf[a-z_]*\\.(cpp|h)") == Leaks{});  // h: of this room only
+  CHECK(leaks("lpsolve/|lp_lib", "src/coanalysis/selection[a-z_]*\\.cpp") == Leaks{});
+  CHECK(leaks("proj(_experimental)?\\.h", "src/place/[a-z_]+\\.cpp") == Leaks{});
+  CHECK(leaks("pugixml", "src/place/[a-z_]+\\.cpp") == Leaks{});
+  CHECK(leaks("sqlite3", "src/store/[a-z_]+\\.cpp") == Leaks{});
+  CHECK(leaks("png\\.h", "src/picture/[a-z_]+\\.cpp|bench/.*\\.cpp") == Leaks{});
+  CHECK(leaks("Spectra/", "src/coanalysis/clustering[a-z_]*\\.cpp") == Leaks{});
+  CHECK(leaks("nanoflann", "src/(coanalysis|measure)/[a-z_]+\\.cpp") == Leaks{});
+  CHECK(leaks("httplib", "src/viewer/viewer\\.cpp") == Leaks{});
   CHECK(leaks("CLI/", "src/cli/.*|bench/.*\\.cpp") == Leaks{});
   CHECK(leaks("(CGAL|boost)/", ".*\\.cpp") == Leaks{});  // in no header
 }
 
-TEST_CASE("rooms see earlier rooms only, and exporters no room but what all share") {
-  for (const Include& i : includes({"src", "exporters"})) {
-    const fs::path folder = i.file.parent_path();
-    if (i.what.find(".h") == std::string::npos || folder == "src/cli") continue;
-    const fs::path seen = (folder / i.what).lexically_normal();
-    if (!fs::exists(kRoot / seen)) continue;  // a library's
+TEST_CASE("every folder of src is a room, and no file stands outside of one") {
+  const std::vector<std::string> all = rooms();
+  for (const auto& entry : fs::directory_iterator(kRoot / "src")) {
+    const std::string name = entry.path().filename().string();
+    INFO("src/" << name);
+    CHECK((entry.is_directory() ? std::count(all.begin(), all.end(), name) == 1
+                                : name == "README.md"));
+  }
+}
+
+TEST_CASE("rooms see the doors of earlier rooms only") {
+  const std::vector<std::string> all = rooms();
+  const auto number = [&](const std::string& room) {
+    return std::find(all.begin(), all.end(), room) - all.begin();
+  };
+  for (const Include& i : includes({"src"})) {
+    const fs::path seen = i.what;
+    const std::string room = seen.parent_path().string(), own = i.file.parent_path().filename();
+    if (room.empty() || number(room) == std::ssize(all)) continue;  // its own file, or a library's
     INFO(i.file.string() << " includes " << i.what);
-    if (folder == "exporters") {
-      const bool is_shared =
-          seen == "src/rays.h" || seen == "src/parallel.h" || seen == "src/switching.h";
-      const bool is_allowed = seen.parent_path() == "exporters" || is_shared || room_of(seen) <= 1;
-      CHECK(is_allowed);
-    } else if (seen.parent_path() == "src") {
-      REQUIRE(room_of(i.file) >= 0);
-      CHECK(room_of(seen) >= 0);
-      CHECK(room_of(seen) <= room_of(i.file));
-    }
+    CHECK(number(room) < number(own));
+    const std::vector<std::string> open = doors(room);
+    CHECK(std::count(open.begin(), open.end(), seen.filename().string()) == 1);
+  }
+}
+
+TEST_CASE(
+    "exporters see what all rooms share and how pictures are compared, synth only the former") {
+  for (const Include& i : includes({"exporters", "synth"})) {
+    const std::string room = fs::path(i.what).parent_path().string();
+    if (!fs::exists(kRoot / "src" / room) || room.empty()) continue;
+    INFO(i.file.string() << " includes " << i.what);
+    CHECK((room == "core" || (room == "measure" && i.file.string().starts_with("exporters"))));
   }
 }
 
@@ -145,7 +160,7 @@ TEST_CASE("every library that CMake looks for has a page in third_party_notes") 
 }
 
 TEST_CASE("files stay short and are formatted as promised") {
-  for (const fs::path& file : sources({"src", "exporters", "tests", "bench"})) {
+  for (const fs::path& file : sources({"src", "exporters", "synth", "tests", "bench"})) {
     const std::string text = slurp(kRoot / file);
     INFO(file.string());
     CHECK(std::count(text.begin(), text.end(), '\n') <= 800);
@@ -156,7 +171,7 @@ TEST_CASE("files stay short and are formatted as promised") {
 }
 
 TEST_CASE("locked npm packages are told by their hashes, wherever they are fetched from") {
-  for (const char* file : {"src/cli/viewer/package-lock.json", "tests/clients/package-lock.json"}) {
+  for (const char* file : {"src/viewer/package-lock.json", "tests/clients/package-lock.json"}) {
     INFO(file);
     const std::string text = slurp(kRoot / file);
     CHECK(text.find("\"integrity\"") != std::string::npos);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../src/geometry.h"
+#include "core/geometry.h"
 
 namespace colod::test {
 

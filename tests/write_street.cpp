@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "../exporters/files.h"
-#include "../exporters/tiles3d.h"
-#include "exporters_helpers.h"
+#include "exporters/exporters_helpers.h"
+#include "exporters/files.h"
+#include "exporters/tiles3d/tiles3d.h"
 
 namespace {
 

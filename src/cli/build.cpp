@@ -3,15 +3,15 @@
 #include <memory>
 #include <mutex>
 
-#include "../../exporters/files.h"
-#include "../parallel.h"
-#include "../pipeline.h"
-#include "../report_pictures.h"
-#include "../store.h"
 #include "cli.h"
+#include "core/parallel.h"
+#include "exporters/files.h"
 #include "input_options.h"
 #include "output.h"
+#include "pipeline/pipeline.h"
 #include "pipeline_options.h"
+#include "publish/report_pictures.h"
+#include "store/store.h"
 
 namespace colod::cli {
 namespace {

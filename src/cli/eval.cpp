@@ -3,14 +3,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "../consistency.h"
-#include "../error.h"
-#include "../light_field.h"
-#include "../metrics.h"
-#include "../parallel.h"
 #include "cli.h"
+#include "core/error.h"
+#include "core/parallel.h"
 #include "input_options.h"
 #include "log.h"
+#include "measure/consistency.h"
+#include "measure/light_field.h"
+#include "measure/metrics.h"
 #include "numbers.h"
 
 namespace colod::cli {

@@ -4,14 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "../../exporters/check.h"
-#include "../../exporters/check_files.h"
-#include "../error.h"
-#include "../metrics.h"
-#include "../parallel.h"
 #include "cli.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "exporters/check/check.h"
+#include "exporters/check/files.h"
 #include "input_options.h"
 #include "log.h"
+#include "measure/metrics.h"
 
 namespace colod::cli {
 namespace {

@@ -1,8 +1,8 @@
 // Options that every subcommand that reads meshes shares.
 #pragma once
 
-#include "../mesh_io.h"
 #include "cli.h"
+#include "read/read.h"
 
 namespace colod::cli {
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "../error.h"
+#include "core/error.h"
 
 namespace colod::cli {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "../../exporters/files.h"
-#include "../error.h"
 #include "cli.h"
+#include "core/error.h"
+#include "exporters/files.h"
 #include "log.h"
 
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "../../exporters/exporter.h"
-#include "../pipeline.h"
 #include "cli.h"
+#include "exporters/exporter.h"
 #include "log.h"
+#include "pipeline/pipeline.h"
 
 namespace colod::cli {
 
@@ -21,7 +21,7 @@ struct OutputArguments {
   bool has_no_page = false;  ///< no report.html
 };
 
-/// Per building of the scene, PNGs (report_pictures.h).
+/// Per building of the scene, PNGs (publish/report_pictures.h).
 using Pictures = std::vector<std::vector<std::string>>;
 
 void add_output_options(CLI::App& app, OutputArguments& a);

@@ -9,13 +9,13 @@
 #include <optional>
 #include <sstream>
 
-#include "../error.h"
-#include "../options.h"
-#include "../parallel.h"
-#include "../store.h"
 #include "cli.h"
+#include "core/error.h"
+#include "core/options.h"
+#include "core/parallel.h"
 #include "log.h"
 #include "numbers.h"
+#include "store/store.h"
 
 namespace colod::cli {
 

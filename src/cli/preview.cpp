@@ -1,14 +1,13 @@
-#include "../preview.h"
-
 #include <filesystem>
 #include <memory>
 
-#include "../../exporters/files.h"
-#include "../frame.h"
-#include "../parallel.h"
 #include "cli.h"
+#include "core/parallel.h"
+#include "exporters/files.h"
 #include "input_options.h"
 #include "numbers.h"
+#include "picture/picture.h"
+#include "read/frame.h"
 
 namespace colod::cli {
 namespace {

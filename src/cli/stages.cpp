@@ -7,17 +7,17 @@
 #include <mutex>
 #include <set>
 
-#include "../../exporters/files.h"
-#include "../error.h"
-#include "../parallel.h"
-#include "../pipeline.h"
-#include "../report_pictures.h"
-#include "../store.h"
 #include "cli.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "exporters/files.h"
 #include "input_options.h"
 #include "numbers.h"
 #include "output.h"
+#include "pipeline/pipeline.h"
 #include "pipeline_options.h"
+#include "publish/report_pictures.h"
+#include "store/store.h"
 
 namespace colod::cli {
 namespace {

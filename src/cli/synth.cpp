@@ -1,11 +1,11 @@
-#include "../synth.h"
+#include "synth/synth.h"
 
 #include <cstdio>
 #include <memory>
 
-#include "../../exporters/files.h"
-#include "../parallel.h"
 #include "cli.h"
+#include "core/parallel.h"
+#include "exporters/files.h"
 #include "numbers.h"
 
 namespace colod::cli {

@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "../error.h"
 #include "cli.h"
+#include "core/error.h"
 #include "log.h"
 #include "numbers.h"
-#include "view_server.h"
+#include "viewer/viewer.h"
 
 namespace colod::cli {
 namespace {

@@ -1,14 +1,15 @@
 // Any soup of triangles on a small grid, which makes every kind of contact and degeneracy likely,
-// through rooms 2 to 9 but the co-analysis: a watertight mesh of all planes, or an Error.
+// through `planes` to `extraction` but the co-analysis: a watertight mesh of all planes, or an
+// Error.
 //   fuzz_build CORPUS -max_len=512 -timeout=60   the first byte turns the grid and chooses options
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <numeric>
 
-#include "../../src/extraction.h"
-#include "../../src/metrics.h"
-#include "../../src/pipeline.h"
+#include "extraction/extraction.h"
+#include "measure/metrics.h"
+#include "pipeline/pipeline.h"
 
 using namespace colod;
 

@@ -1,14 +1,14 @@
 // Any bytes as a GLB, or as a tileset.json beside a good tile: findings, never a crash.
 //   fuzz_check CORPUS -max_len=8192        the first byte of an input chooses
-#include "../../exporters/check.h"
+#include "exporters/check/check.h"
 
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "../../exporters/check_files.h"
-#include "../../src/error.h"
+#include "core/error.h"
+#include "exporters/check/files.h"
 
 namespace fs = std::filesystem;
 

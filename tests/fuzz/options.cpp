@@ -1,12 +1,12 @@
 // Any numbers as options: an Error, or options that all lie in their ranges.
 //   fuzz_options CORPUS -max_len=256
-#include "../../src/options.h"
+#include "core/options.h"
 
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
-#include "../../src/error.h"
+#include "core/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   colod::Options options;

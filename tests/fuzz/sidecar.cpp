@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../src/error.h"
-#include "../../src/georeference.h"
+#include "core/error.h"
+#include "place/place.h"
 
 namespace fs = std::filesystem;
 

@@ -1,13 +1,13 @@
 // Any bytes as a scene file: an Error, or buildings that can be exported, never a crash.
 //   fuzz_store CORPUS -max_len=131072      start from scene files of small buildings
-#include "../../src/store.h"
+#include "store/store.h"
 
 #include <unistd.h>
 
 #include <fstream>
 
-#include "../../src/error.h"
-#include "../../src/publish.h"
+#include "core/error.h"
+#include "publish/publish.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string path = "/tmp/colod-fuzz-" + std::to_string(getpid()) + ".colod";

@@ -1,0 +1,140 @@
+// Based on: what Unity, Unreal and Godot importers read: names ending in _LOD<n>, a pivot on the
+// ground, one material.
+// Differs: distances and screen sizes come from measured switches.
+// Notation: H viewport_height, D bounding sphere's diameter, g a level's gsd.
+#include "engine.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/error.h"
+#include "gltf.h"
+#include "metadata.h"
+
+namespace colod {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double kFinestShare = 0.3;  // of the bound
+constexpr double kFall = 0.999;       // from one level's screen size to the next
+
+/// Finest first.
+std::vector<const ExportLevel*> levels_of(const ExportBuilding& building) {
+  std::vector<const ExportLevel*> out;
+  for (auto it = building.levels.rbegin(); it != building.levels.rend(); ++it) {
+    if (it->mesh.triangles.empty())
+      throw Error(Stage::kOutput, building.name,
+                  "layer " + std::to_string(it->layers.back()) + " has no triangles");
+    out.push_back(&*it);
+  }
+  if (out.empty()) throw Error(Stage::kOutput, building.name, "no layer to write");
+  return out;
+}
+
+/// Middle of the footprint on the ground, building-local; the same for all levels.
+Vec3 pivot_of(const ExportBuilding& building) {
+  Box box;
+  for (const ExportLevel& level : building.levels)
+    for (const Vec3& p : level.mesh.vertices) box.extend(p);
+  return {box.center().x(), box.center().y(), box.min.z()};
+}
+
+std::string level_name(const ExportBuilding& building, std::size_t lod) {
+  return building.name + "_LOD" + std::to_string(lod);
+}
+
+QuantizationGrid level_grid(const ExportLevel& level, const Vec3& pivot, bool is_finest,
+                            const EngineOptions& options) {
+  Box box;
+  for (const Vec3& p : level.mesh.vertices) box.extend(to_gltf(p - pivot));
+  return fit_closed_grid(level.mesh, -pivot, box,
+                         options.quantization * (is_finest ? kFinestShare : 1.0));
+}
+
+Json level_json(const ExportBuilding& building, std::size_t lod, const ExportLevel& level,
+                double rounding, double diameter, const SwitchFacts& switching) {
+  const double view = 2 * std::tan(switching.fov_y_deg * std::numbers::pi / 360);
+  Json json;
+  json["lod"] = lod;
+  json["layer"] = level.layers.back();
+  json["layers"] = level.layers;
+  json["file"] = level_name(building, lod) + ".glb";
+  json["triangles"] = level.mesh.triangles.size();
+  json["gsd"] = level.gsd;
+  json["deviation"] = level.deviation + rounding;
+  json["switch_distance"] = level.gsd * switching.viewport_height / view;
+  json["screen_size"] =
+      lod == 0 ? 1 : std::min(1.0, diameter / (level.gsd * switching.viewport_height));
+  return json;
+}
+
+}  // namespace
+
+std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
+                                          const EngineOptions& options) {
+  const auto levels = levels_of(building);
+  const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
+  std::vector<Encoded> files;
+  for (std::size_t lod = 0; lod < levels.size(); ++lod) {
+    const QuantizationGrid grid = level_grid(*levels[lod], pivot, lod == 0, options);
+    FlatMesh flat = flatten(levels[lod]->mesh, -pivot, grid);
+    flat.feature_ids.clear();  // one building a file
+    GltfDocument document = start_gltf();
+    document.json["asset"]["extras"] = {{"pivot", {world.x(), world.y(), world.z()}},
+                                        {"pivotAxes", "z up, metres"}};
+    document.json["materials"][0]["name"] = building.name;
+    const std::string name = level_name(building, lod);
+    const Json primitive = add_primitive(document, flat, grid, Compression::kNone);
+    document.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
+    document.json["nodes"].push_back({{"name", name},
+                                      {"mesh", 0},
+                                      {"extras",
+                                       {{"building", building.name},
+                                        {"given_name", shown_name(building)},
+                                        {"layer", levels[lod]->layers.back()}}}});
+    files.push_back({"engine/" + name + ".glb", finish_glb(std::move(document))});
+  }
+  return files;
+}
+
+Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
+                         const EngineOptions& options) {
+  Json list = Json::array();
+  for (const ExportBuilding& building : buildings) {
+    const auto levels = levels_of(building);
+    const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
+    const double diameter = bounding_box(levels[0]->mesh.vertices).diagonal();
+    Json entry = {{"name", building.name},
+                  {"given_name", shown_name(building)},
+                  {"source", building.source},
+                  {"pivot", {world.x(), world.y(), world.z()}},
+                  {"bounding_sphere_diameter", diameter},
+                  {"levels", Json::array()}};
+    for (std::size_t lod = 0; lod < levels.size(); ++lod) {
+      const double rounding = level_grid(*levels[lod], pivot, lod == 0, options).error();
+      Json level = level_json(building, lod, *levels[lod], rounding, diameter, options.switching);
+      if (lod > 0)  // strictly apart, so that importers keep every level
+        level["screen_size"] =
+            std::min(level["screen_size"].get<double>(),
+                     kFall * entry["levels"].back()["screen_size"].get<double>());
+      entry["levels"].push_back(level);
+    }
+    list.push_back(entry);
+  }
+  Json json;
+  json["about"] =
+      "LOD0 is the finest. A level is shown from switch_distance (metres) on, where a pixel covers "
+      "gsd metres, or where the bounding sphere's diameter is at most screen_size of the "
+      "viewport's "
+      "height. Files are y up with the pivot on the ground; pivot is its place in the input's "
+      "coordinates, z up, metres.";
+  json["switching"] = switching_json(options.switching);
+  json["viewport_height"] = options.switching.viewport_height;
+  json["fov_y_deg"] = options.switching.fov_y_deg;
+  json["buildings"] = list;
+  return {"engine/lods.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"};
+}
+
+}  // namespace colod

@@ -1,0 +1,26 @@
+// 3D Tiles 1.1: tileset.json and tiles/ over all buildings' levels; clients switch where they were
+// measured to.
+#pragma once
+
+#include "exporters/exporter.h"
+
+namespace colod {
+
+struct TilesOptions {
+  Compression compression = Compression::kDraco;
+  double quantization = 0.01;  ///< metres: bound on the position error, finer for the finest layer
+  double target_sse = 16;      ///< pixels that clients refine at: a tile's geometricError is
+                               ///< target_sse times the gsd of what it shows
+  SwitchFacts switching = {};  ///< pixel_error: what a stand-in's deviation may be
+  Placement placement = {};    ///< empty: the frame is local and no place on Earth is made up
+};
+
+/// First of the result is tileset.json, last written. Frames have their origin at the middle of the
+/// buildings' foot, to the metre; its world position is in asset.extras. Boxes in z-up tile space,
+/// children inside parents, errors strictly falling, leaves 0. Beyond 256 buildings or a kilometre,
+/// cells are tilesets of their own, tiles/<cell>/tileset.json. Runs in parallel. Throws
+/// Error{kOutput} for a building without levels or triangles.
+std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
+                                    const TilesOptions& options = {});
+
+}  // namespace colod

@@ -1,0 +1,124 @@
+// Based on: Blanco, Rai, "nanoflann: a C++ header-only fork of FLANN, a library for nearest
+// neighbor search with kd-trees", 2014.
+//
+// dis = η ‖h − h'‖₂ + ‖v − v'‖₁ / (‖v‖₁ + ‖v'‖₁) is not a norm of differences, so a kd-tree cannot
+// search it. Near each other, the second term is tanh(½ |ln ‖v‖₁ − ln ‖v'‖₁|) for equal proportions
+// and half the difference of the proportions for equal sums. The tree therefore holds η times the
+// histogram's first principal components, ½ ln ‖v‖₁ and the halved proportions of v; it returns
+// three times as many as are wanted, which are sorted by dis itself.
+//
+// Differs: the paper compares all pairs.
+//
+// Notation: h histogram, v eigenvalues.
+#include "clustering_neighbours.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <nanoflann.hpp>
+
+#include "core/parallel.h"
+
+namespace colod {
+namespace {
+
+constexpr int kComponents = 6;  // of the histogram
+constexpr int kDimensions = kComponents + 4;
+constexpr int kCandidates = 3;  // times what is wanted
+constexpr int kLeaf = 20;
+constexpr double kLeastSum = 1e-6;  // m², for logarithms
+
+using Histogram = Eigen::Matrix<double, 64, 1>;
+using Point = std::array<double, kDimensions>;
+
+double sane(double x) { return std::isfinite(x) ? x : 0; }
+
+Histogram histogram_of(const Descriptor& d) {
+  Histogram h;
+  for (int b = 0; b < 64; ++b) h[b] = sane(d.d2[b]);
+  return h;
+}
+
+// The directions in which the histograms differ most, a column each.
+Eigen::Matrix<double, 64, kComponents> principal_components(const std::vector<Descriptor>& segments,
+                                                            const std::vector<int>& ids) {
+  Histogram mean = Histogram::Zero();
+  for (const int s : ids) mean += histogram_of(segments[s]);
+  mean /= static_cast<double>(ids.size());
+  Eigen::Matrix<double, 64, 64> covariance = Eigen::Matrix<double, 64, 64>::Zero();
+  for (const int s : ids) {
+    const Histogram h = histogram_of(segments[s]) - mean;
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(h);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 64, 64>> solver(covariance);
+  return solver.eigenvectors().rightCols<kComponents>();
+}
+
+struct Cloud {
+  std::vector<Point> points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t d) const { return points[i][d]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+Cloud embed(const std::vector<Descriptor>& segments, const std::vector<int>& ids, double eta) {
+  const auto components = principal_components(segments, ids);
+  Cloud cloud;
+  cloud.points.resize(ids.size());
+  parallel_for(
+      ids.size(),
+      [&](std::size_t i) {
+        const Descriptor& d = segments[ids[i]];
+        const Eigen::Matrix<double, kComponents, 1> shape =
+            components.transpose() * histogram_of(d);
+        Point& p = cloud.points[i];
+        for (int c = 0; c < kComponents; ++c) p[c] = eta * shape[c];
+        const double sum = std::max(kLeastSum, sane(d.eigenvalues.lpNorm<1>()));
+        p[kComponents] = 0.5 * std::log(sum);
+        for (int a = 0; a < 3; ++a) p[kComponents + 1 + a] = 0.5 * sane(d.eigenvalues[a]) / sum;
+      },
+      64);
+  return cloud;
+}
+
+}  // namespace
+
+std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descriptor>& segments,
+                                                       const std::vector<int>& ids, int count,
+                                                       double eta) {
+  std::vector<std::vector<Neighbour>> result(ids.size());
+  if (ids.size() < 2) return result;
+  const Cloud cloud = embed(segments, ids, eta);
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>,
+                                                   Cloud, kDimensions, std::uint32_t>;
+  Tree tree(kDimensions, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf));
+  tree.buildIndex();
+  const std::size_t wanted = std::min<std::size_t>(ids.size(), kCandidates * count + 1);
+  parallel_for(
+      ids.size(),
+      [&](std::size_t i) {
+        std::vector<std::uint32_t> found(wanted);
+        std::vector<double> squared(wanted);
+        found.resize(tree.knnSearch(cloud.points[i].data(), wanted, found.data(), squared.data()));
+        std::vector<Neighbour>& near = result[i];
+        for (const std::uint32_t j : found) {
+          if (j == i) continue;
+          const int a = ids[std::min<std::size_t>(i, j)], b = ids[std::max<std::size_t>(i, j)];
+          const double s = segment_similarity(segments[a], segments[b], eta);
+          if (std::isfinite(s)) near.push_back({static_cast<int>(j), s});
+        }
+        std::sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {
+          return a.similarity != b.similarity ? a.similarity > b.similarity : a.index < b.index;
+        });
+        if (near.size() > static_cast<std::size_t>(count)) near.resize(count);
+        near.shrink_to_fit();
+      },
+      32);
+  return result;
+}
+
+}  // namespace colod

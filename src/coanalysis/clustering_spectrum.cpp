@@ -1,0 +1,126 @@
+// Based on: von Luxburg, "A tutorial on spectral clustering", 2007; implicitly restarted Lanczos by
+// Spectra (Lehoucq, Sorensen, "Deflation techniques for an implicitly restarted Arnoldi iteration",
+// 1996).
+//
+// L = I − A with A = D^-1/2 S D^-1/2: the smallest eigenvalues of L are the largest of A, which is
+// what Lanczos finds fast. Up to 400 segments all eigenvalues by Householder; up to 3,000 Lanczos
+// on the dense A; beyond, S keeps the 50 most similar segments of each (made symmetric) and is
+// sparse.
+//
+// Differs: the paper has the dense form only.
+//
+// Notation: clustering.cpp.
+#include "clustering_spectrum.h"
+
+#include <Spectra/MatOp/DenseSymMatProd.h>
+#include <Spectra/MatOp/SparseSymMatProd.h>
+#include <Spectra/SymEigsSolver.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "clustering_neighbours.h"
+#include "core/parallel.h"
+
+namespace colod {
+namespace {
+
+constexpr int kAllEigenvalues = 400, kDense = 3000, kNeighbours = 50;
+constexpr int kReported = 10, kRestarts = 300;
+constexpr double kConverged = 1e-11;
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+double similarity(const std::vector<Descriptor>& segments, int a, int b, double eta) {
+  const double s = segment_similarity(segments[std::min(a, b)], segments[std::max(a, b)], eta);
+  return std::isfinite(s) ? s : 0;
+}
+
+Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
+                               double eta) {
+  const auto n = static_cast<Eigen::Index>(ids.size());
+  Eigen::MatrixXd a(n, n);
+  parallel_for(ids.size(), [&](std::size_t j) {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      a(i, j) = i == j ? 1 : similarity(segments, ids[i], ids[j], eta);
+  });
+  const Eigen::VectorXd scale = a.colwise().sum().cwiseSqrt().cwiseInverse();  // sums are ≥ 1
+  return scale.asDiagonal() * a * scale.asDiagonal();
+}
+
+// An edge counts when either end names the other.
+Sparse sparse_affinity(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
+                       double eta) {
+  const std::size_t n = ids.size();
+  std::vector<Eigen::Triplet<double>> entries;
+  {
+    const auto nearest = nearest_neighbours(segments, ids, kNeighbours, eta);
+    entries.reserve(n * (2 * kNeighbours + 1));
+    for (std::size_t i = 0; i < n; ++i) {
+      entries.emplace_back(i, i, 1.0);
+      for (const Neighbour& near : nearest[i]) {
+        entries.emplace_back(i, near.index, near.similarity);
+        entries.emplace_back(near.index, i, near.similarity);
+      }
+    }
+  }
+  Sparse s(n, n);
+  s.setFromTriplets(entries.begin(), entries.end(),
+                    [](double a, double b) { return std::max(a, b); });
+  const Eigen::VectorXd scale =
+      (s * Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n))).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * s * scale.asDiagonal();
+}
+
+// From A's eigenpairs, falling.
+Spectrum spectrum_of(const Eigen::VectorXd& falling, const Eigen::MatrixXd& vectors, int k) {
+  Spectrum spectrum;
+  if (falling.size() < k) return spectrum;
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(falling.size(), kReported); ++i)
+    spectrum.values.push_back(std::max(0.0, 1 - falling[i]));
+  spectrum.vectors = vectors.leftCols(k);
+  for (int c = 0; c < k; ++c) {
+    // The sign is free: of the entries about as large as the largest the first is positive.
+    const double most = spectrum.vectors.col(c).cwiseAbs().maxCoeff();
+    Eigen::Index first = 0;
+    while (std::abs(spectrum.vectors(first, c)) < most * (1 - 1e-6)) ++first;
+    if (spectrum.vectors(first, c) < 0) spectrum.vectors.col(c) *= -1;
+  }
+  return spectrum;
+}
+
+template <class Product>
+Spectrum lanczos(Product product, Eigen::Index n, int k, std::uint64_t seed) {
+  const auto wanted = std::min<Eigen::Index>(n - 1, std::max(k + 1, kReported));
+  const auto basis = std::min<Eigen::Index>(n, 4 * wanted + 20);
+  Spectra::SymEigsSolver<Product> solver(product, wanted, basis);
+  std::mt19937_64 random(seed);
+  Eigen::VectorXd first(n);
+  for (double& x : first) x = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  solver.init(first.data());
+  solver.compute(Spectra::SortRule::LargestAlge, kRestarts, kConverged);
+  if (solver.info() != Spectra::CompInfo::Successful) return {};
+  return spectrum_of(solver.eigenvalues(), solver.eigenvectors(), k);
+}
+
+}  // namespace
+
+Spectrum smallest_spectrum(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
+                           int k, double eta, std::uint64_t seed) {
+  const auto n = static_cast<Eigen::Index>(ids.size());
+  if (n > kDense && n > 4 * k) {
+    const Sparse a = sparse_affinity(segments, ids, eta);
+    return lanczos(Spectra::SparseSymMatProd<double>(a), n, k, seed);
+  }
+  const Eigen::MatrixXd a = dense_affinity(segments, ids, eta);
+  if (n > kAllEigenvalues && n > 4 * k)
+    return lanczos(Spectra::DenseSymMatProd<double>(a), n, k, seed);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
+  if (solver.info() != Eigen::Success) return {};
+  return spectrum_of(solver.eigenvalues().reverse(), solver.eigenvectors().rowwise().reverse(), k);
+}
+
+}  // namespace colod

@@ -1,0 +1,56 @@
+// Shared by `segments` and `extraction`: what planes enclose only in part: trays (balconies),
+// niches (loggias, shop fronts) and shafts (chimneys whose top no scan shows); and bays, dormers
+// and the recesses of windows and doors, which rays do not always part from what is behind them.
+#pragma once
+
+#include <vector>
+
+#include "planes/planes.h"
+
+namespace colod {
+
+/// normal · x ≤ offset.
+struct HalfSpace {
+  Vec3 normal;
+  double offset;  ///< metres
+};
+using Region = std::vector<HalfSpace>;  ///< convex: what lies in all of them
+
+bool contains(const Region& region, const Vec3& x);
+
+struct Hollow {
+  enum class Kind {
+    kTray,    ///< a floor with thin walls around it and nothing above
+    kNiche,   ///< between two walls that face each other, behind the facade
+    kShaft,   ///< between two walls that look away from each other; solid
+    kBay,     ///< before a facade; closed, with nothing missing
+    kDormer,  ///< on a roof that it stands out of
+    kRecess   ///< a window's or a door's: a pane behind the facade, and its reveals
+  };
+  Kind kind;
+  std::vector<int> planes = {};  ///< rising
+  std::vector<int> bounds = {};  ///< those of them that end it, rising: the mesh cannot do without
+  Region air = {};               ///< outside the building, whatever rays see; a shaft has none
+  Region solid = {};             ///< inside it: a tray's floor, a shaft; a niche has none
+  std::vector<Region> sheets = {};  ///< thin walls: rays say nothing of them
+
+  /// Nothing of it is missing that rays would need: bays, recesses, dormers on roofs that are not
+  /// steep.
+  bool is_whole = false;
+
+  /// A face that must be there although no plane shows it.
+  struct Rim {
+    Vec3 normal;             ///< unit, out of the solid
+    double offset;           ///< metres
+    std::vector<Vec3> hull;  ///< on it
+    int like = -1;           ///< the plane whose back it is; −1: none
+  };
+  std::vector<Rim> rims = {};
+};
+
+/// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays
+/// first, then niches, shafts, bays, dormers and recesses, by lowest planes. Cheap: pairs of small
+/// planes that are near.
+std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& among);
+
+}  // namespace colod

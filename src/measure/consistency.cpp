@@ -1,0 +1,255 @@
+// Based on: nothing published; the paper measured consistency by a user study only.
+//
+// Differs: –
+//
+// Notation: –
+#include "consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/rays.h"
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPresentShare = 0.75;
+constexpr double kNear = 0.25;      // metres at most: a scan has no roof under its dormers, and a
+                                    // layer's roof may lie half a relief from them
+constexpr double kNearShare = 0.5;  // of the relief
+constexpr double kSpacing = 0.1;    // metres between samples
+constexpr int kLeastSamples = 20;
+constexpr double kReliefRank = 0.9;    // of the samples' distances, where the relief is not said
+constexpr double kLeastRelief = 0.02;  // metres
+
+// Evenly over a triangle, about one a square of kSpacing.
+void sample_face(const Mesh& mesh, const Face& f, std::vector<Vec3>& samples) {
+  const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  const int n = std::clamp(static_cast<int>(longest / kSpacing), 1, 200);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      const double u = (i + 1.0 / 3) / n, v = (j + 1.0 / 3) / n;
+      samples.push_back(a + u * (b - a) + v * (c - a));
+    }
+}
+
+struct SampledPart {
+  TruthPart truth;
+  std::vector<Vec3> samples;
+};
+
+// How near counts as there.
+double reach(const TruthPart& part) { return std::min(kNear, kNearShare * part.depth); }
+
+double distance_to(const RayScene& mesh, const Vec3& x) {
+  const NearestPoint near = mesh.nearest(x);
+  return near.triangle >= 0 ? near.distance : std::numeric_limits<double>::infinity();
+}
+
+// Finds the relief where it is not said, and keeps the samples that tell.
+void keep_telling(SampledPart& part, const RayScene& main_building) {
+  std::vector<double> distance;
+  for (const Vec3& x : part.samples) distance.push_back(distance_to(main_building, x));
+  if (part.truth.depth < 0) {
+    std::vector<double> sorted = distance;
+    std::sort(sorted.begin(), sorted.end());
+    const double relief =
+        sorted.empty() ? 0 : sorted[static_cast<std::size_t>(kReliefRank * (sorted.size() - 1))];
+    part.truth.depth = std::max(kLeastRelief, std::isfinite(relief) ? relief : 0);
+  }
+  std::vector<Vec3> telling;
+  for (std::size_t i = 0; i < distance.size(); ++i)
+    if (distance[i] > reach(part.truth)) telling.push_back(part.samples[i]);
+  part.samples = std::move(telling);
+}
+
+std::vector<SampledPart> sample_parts(const Source& source, const TruthBuilding& truth) {
+  std::vector<SampledPart> parts;
+  std::map<int, std::size_t> part_of;
+  for (const TruthPart& p : truth.parts) {
+    part_of[p.instance] = parts.size();
+    parts.push_back({p, {}});
+  }
+  Mesh rest{source.mesh.vertices, {}};
+  for (std::size_t f = 0; f < source.mesh.faces.size(); ++f) {
+    const int object = source.face_object[f];
+    if (const auto at = part_of.find(object); at != part_of.end())
+      sample_face(source.mesh, source.mesh.faces[f], parts[at->second].samples);
+    if (std::binary_search(truth.main_building.begin(), truth.main_building.end(), object))
+      rest.faces.push_back(source.mesh.faces[f]);
+  }
+  const RayScene main_building(rest);
+  for (SampledPart& part : parts) keep_telling(part, main_building);
+  return parts;
+}
+
+double share_near(const SampledPart& part, const RayScene& mesh) {
+  std::size_t near = 0;
+  for (const Vec3& x : part.samples) near += distance_to(mesh, x) <= reach(part.truth);
+  return static_cast<double>(near) / static_cast<double>(part.samples.size());
+}
+
+TruthBuilding read_synth_building(const nlohmann::json& b) {
+  TruthBuilding building{b.at("name"), {}, {}};
+  for (const auto& p : b.at("parts"))
+    if (p.at("level") == 0)
+      building.main_building.push_back(p.at("instance"));
+    else
+      building.parts.push_back({p.at("type"), p.at("instance"), p.at("level"), p.at("depth")});
+  return building;
+}
+
+// Empty for what is not judged: walls, roofs and what no rule names.
+std::string kind_of(const nlohmann::json& object) {
+  const std::string type = object.value("type", "");
+  if (type == "Window" || type == "Door") return type == "Window" ? "window" : "door";
+  if (type != "BuildingInstallation") return "";
+  const auto guess = object.find("function_guess_from_geometry");
+  const std::string text =
+      guess != object.end() && guess->is_string() ? guess->get<std::string>() : "";
+  for (const char* kind : {"chimney", "dormer", "balcony", "steps", "thin"})
+    if (text.starts_with(kind)) return kind;
+  return "other";
+}
+
+TruthBuilding read_labelled_building(const std::string& name, const nlohmann::json& b) {
+  TruthBuilding building{name, {}, {}};
+  for (const auto& object : b.at("objects"))
+    if (const std::string kind = kind_of(object); kind.empty())
+      building.main_building.push_back(object.at("index"));
+    else
+      building.parts.push_back({kind, object.at("index"), -1, -1});
+  return building;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+TypeConsistency tally_type(const std::string& type, const std::vector<const PlacedPart*>& parts,
+                           int layers) {
+  TypeConsistency t;
+  t.type = type;
+  t.first.assign(layers, 0), t.present.assign(layers, 0);
+  std::vector<double> depths;
+  for (const PlacedPart* p : parts) {
+    t.unseen += !p->is_seen;
+    if (!p->is_seen) continue;
+    ++t.seen, depths.push_back(p->depth);
+    for (int k = 0; k < layers; ++k) t.present[k] += p->present[k];
+    t.never += p->first < 0;
+    if (p->first >= 0) ++t.first[p->first];
+    t.expected += p->first >= 0 && p->first == p->level;
+  }
+  t.depth = median(depths);
+  const auto most = std::max_element(t.first.begin(), t.first.end());
+  if (most == t.first.end() || *most == 0) return t;
+  t.majority_layer = static_cast<int>(most - t.first.begin());
+  t.on_majority_layer = static_cast<double>(*most) / t.seen;
+  t.of_appearing = static_cast<double>(*most) / (t.seen - t.never);
+  std::map<std::string, bool> agrees;
+  for (const PlacedPart* p : parts)
+    if (p->is_seen) {
+      const auto at = agrees.emplace(p->building, true).first;
+      at->second = at->second && p->first == t.majority_layer;
+    }
+  t.buildings = static_cast<int>(agrees.size());
+  const auto agreeing =
+      std::count_if(agrees.begin(), agrees.end(), [](const auto& b) { return b.second; });
+  t.buildings_agreeing = static_cast<double>(agreeing) / t.buildings;
+  return t;
+}
+
+}  // namespace
+
+Truth read_truth(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw Error(Stage::kInput, path, "cannot be opened");
+  Truth truth;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(in);
+    if (const auto buildings = json.find("buildings");
+        buildings != json.end() && buildings->is_array()) {
+      for (const auto& b : *buildings) truth.push_back(read_synth_building(b));
+    } else {
+      for (const auto& [name, b] : json.items())
+        if (b.is_object() && b.contains("objects"))
+          truth.push_back(read_labelled_building(name, b));
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(Stage::kInput, path, std::string("no ground truth: ") + e.what());
+  }
+  if (truth.empty()) throw Error(Stage::kInput, path, "names no building");
+  for (TruthBuilding& b : truth) std::sort(b.main_building.begin(), b.main_building.end());
+  return truth;
+}
+
+std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& truth,
+                                    const std::vector<Mesh>& layers) {
+  if (source.face_object.size() != source.mesh.faces.size() || source.face_object.empty())
+    throw Error(Stage::kInput, source.name,
+                "its faces carry no object numbers to hold against the truth");
+  std::vector<RayScene> scenes;
+  for (const Mesh& mesh : layers) scenes.emplace_back(mesh);
+  const int count = static_cast<int>(layers.size());
+  std::vector<PlacedPart> placed;
+  for (const SampledPart& part : sample_parts(source, truth)) {
+    PlacedPart p{.building = truth.name,
+                 .type = part.truth.type,
+                 .instance = part.truth.instance,
+                 .level = part.truth.level,
+                 .depth = part.truth.depth,
+                 .is_seen = part.samples.size() >= kLeastSamples,
+                 .first = -1,
+                 .present = std::vector<char>(count, 0),
+                 .near = std::vector<double>(count, 0)};
+    int first = count;
+    for (int k = count; k-- > 0 && p.is_seen;) {
+      p.near[k] = share_near(part, scenes[k]);
+      p.present[k] = p.near[k] >= kPresentShare;
+      if (p.present[k] && first == k + 1) first = k;
+    }
+    if (first < count) p.first = first;
+    placed.push_back(std::move(p));
+  }
+  return placed;
+}
+
+std::vector<TypeConsistency> tally_parts(const std::vector<PlacedPart>& parts, int layers) {
+  std::map<std::string, std::vector<const PlacedPart*>> by_type;
+  for (const PlacedPart& p : parts) by_type[p.type].push_back(&p);
+  std::vector<TypeConsistency> types;
+  for (const auto& [type, members] : by_type) types.push_back(tally_type(type, members, layers));
+  return types;
+}
+
+std::string consistency_json(const std::vector<TypeConsistency>& types) {
+  Json json = Json::object();
+  for (const TypeConsistency& t : types)
+    json[t.type] = {{"seen", t.seen},
+                    {"unseen", t.unseen},
+                    {"never", t.never},
+                    {"first", t.first},
+                    {"present", t.present},
+                    {"depth", t.depth},
+                    {"majority_layer", t.majority_layer},
+                    {"on_majority_layer", t.on_majority_layer},
+                    {"of_appearing", t.of_appearing},
+                    {"on_expected_layer",
+                     t.seen > t.never ? static_cast<double>(t.expected) / (t.seen - t.never) : 0},
+                    {"buildings", t.buildings},
+                    {"buildings_agreeing", t.buildings_agreeing}};
+  return json.dump();
+}
+
+}  // namespace colod

@@ -1,0 +1,156 @@
+// Based on: own work.
+// Differs: the same under both rules, but that nothing is refused under the paper's.
+// Notation: none.
+#include "losses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "measure/lost_bodies.h"
+#include "measure/scene_part.h"
+#include "scene/left_out.h"
+
+namespace colod {
+namespace {
+
+constexpr double kLevel = 0.5;  // upright component of a roof's normal at least
+
+/// What may be asked for of a cloud. Its outlines of steep planes are guesses from few points: of
+/// 72 airborne clouds they made most of what seemed to be missed.
+Mesh roofs_of(Mesh surface) {
+  std::erase_if(surface.faces, [&](const Face& f) {
+    const Vec3 cross = face_cross(surface, f);
+    return !(std::abs(cross.z()) > kLevel * cross.norm());
+  });
+  return surface;
+}
+
+std::string percent(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.*f %%", share < 0.0995 ? 1 : 0, 100 * share);
+  return text;
+}
+
+std::string describe(const LeftOut& l) {
+  char text[200];
+  switch (l.reason) {
+    case LeftOut::Reason::kLost:
+      if (l.volume < 0) {
+        std::snprintf(
+            text, sizeof text,
+            "%.3g m2, %s of the surface, is on no layer: up to %.1f m from the finest one; "
+            "is it one building? --split component meshes pieces one by one",
+            l.area, percent(l.share).c_str(), l.farthest);
+        return text;
+      }
+      std::snprintf(
+          text, sizeof text,
+          "a body of %.3g m3, %s of the volume, is on no layer: %.3g m2 of surface, up to "
+          "%.1f m from the finest one; --split component meshes bodies one by one",
+          l.volume, percent(l.volume_share).c_str(), l.area, l.farthest);
+      return text;
+    case LeftOut::Reason::kGround:
+      std::snprintf(
+          text, sizeof text,
+          "%s of the surface is taken for ground and left out: is this a piece of a scene?",
+          percent(l.share).c_str());
+      return text;
+    default:
+      std::snprintf(text, sizeof text,
+                    "%s of the source in pieces afloat is left out, up to %.1f m away; --split "
+                    "component keeps pieces as buildings",
+                    percent(std::max(l.share, l.volume_share)).c_str(), l.farthest);
+      return text;
+  }
+}
+
+}  // namespace
+
+Surface surface_of(const Building& b) {
+  if (!b.source.is_mesh()) return outline_soup(b.planes);
+  Mesh surface{b.source.mesh.vertices, {}};
+  for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
+    if (b.planes.plane_of_item[f] != kFloater) surface.faces.push_back(b.source.mesh.faces[f]);
+  return surface;
+}
+
+const char* describe(StandIn reason) {
+  switch (reason) {
+    case StandIn::kNone:
+      return "";
+    case StandIn::kRicher:
+      return "came out richer than the next finer one and takes its mesh";
+    case StandIn::kInvented:
+      return "came out with most of its roofs and many walls far from the source: it stands "
+             "elsewhere, "
+             "so that the next finer layer's mesh stands in";
+    case StandIn::kVolume:
+      return "came out with another volume than the finer ones, by more than a fifth: it lost a "
+             "part "
+             "of the building or invented one, so that the next finer layer's mesh stands in";
+  }
+  return "";
+}
+
+void forget_losses(Building& b) {
+  std::erase_if(b.left_out, [](const LeftOut& l) { return l.reason == LeftOut::Reason::kLost; });
+}
+
+void weigh_finest(const Surface& source, Building& b) {
+  forget_losses(b);
+  if (b.layers.empty() || !b.layers.back().failure.empty()) return;
+  const Mesh finest = b.layers.back().mesh.mesh();
+  const Holdings holdings =
+      b.source.is_mesh() ? weigh_layer(source, finest) : weigh_layer(roofs_of(source.mesh), finest);
+  b.solid = holdings.solid;
+  double whole = holdings.whole;
+  for (const LeftOut& l : b.left_out) whole += std::max(0.0, l.volume);
+  for (LeftOut& l : b.left_out)
+    if (l.volume >= 0 && whole > 0) l.volume_share = l.volume / whole;
+  double of_input = 1;  // the surface that was weighed
+  for (const LeftOut& l : b.left_out) of_input -= l.share;
+  for (LeftOut l : holdings.lost) {
+    l.share *= std::max(0.0, of_input);
+    if (l.volume >= 0) l.volume_share = l.volume / whole;
+    b.left_out.push_back(l);
+  }
+}
+
+void replace_invented(const Surface& source, Building& b) {
+  std::vector<Mesh> meshes;
+  std::vector<Layer*> shown;
+  for (Layer& layer : b.layers)
+    if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
+  if (shown.empty()) return;
+  const std::vector<InventedShare> shares = invented_shares(source, meshes);
+  for (std::size_t i = shown.size(); i-- > 0;) {
+    shown[i]->invented = shares[i].share;
+    if (!shares[i].is_too_much || i + 1 == shown.size()) continue;
+    shown[i]->mesh = shown[i + 1]->mesh;
+    shown[i]->invented = shown[i + 1]->invented;
+    shown[i]->stand_in = StandIn::kInvented;
+  }
+}
+
+std::string judge_building(const Surface& source, const Building& b) {
+  if (b.layers.empty() || !b.layers.back().failure.empty()) return "";
+  const std::string why = judge_scene(survey_layer(source, b.layers.back().mesh, b.solid));
+  if (why.empty()) return "";
+  return b.source.name + ": this looks like a part of a scene: " + why +
+         "; nothing is written for it, --rules paper meshes it all the same";
+}
+
+std::vector<std::string> loss_warnings(const Building& b) {
+  std::vector<const LeftOut*> heavy;
+  for (const LeftOut& l : b.left_out)
+    if (warning_weight(l) > 0) heavy.push_back(&l);
+  std::stable_sort(heavy.begin(), heavy.end(), [](const LeftOut* x, const LeftOut* y) {
+    return warning_weight(*x) > warning_weight(*y);
+  });
+  std::vector<std::string> warnings;
+  for (const LeftOut* l : heavy) warnings.push_back(describe(*l));
+  return warnings;
+}
+
+}  // namespace colod

@@ -1,0 +1,472 @@
+// Differs: a building that fails keeps its place with the reason. A coarser layer that came out
+// richer than the next finer one takes its mesh, so that detail never decreases along a chain;
+// under robust rules also one whose volume is off by more than a fifth: it has lost part of the
+// building.
+
+#include "pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "losses.h"
+#include "rounds.h"
+#include "scene/ground.h"
+#include "scene/hidden.h"
+#include "scene/left_out.h"
+
+namespace colod {
+namespace {
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
+constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
+constexpr const char* kEmptyLayer =
+    "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
+constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
+constexpr int kSides = 8;  // of round shapes on layer 0; twice as many on each finer one
+
+bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
+
+void find_segments(Building& b, const Options& o) {
+  {
+    Stopwatch watch(b.timings.planes);
+    b.planes = detect_planes(b.source, {.is_paper = is_paper(o),
+                                        .distance = o.distance,
+                                        .angle_deg = o.angle_deg,
+                                        .min_points = o.min_points});
+  }
+  b.segments = build_segments(
+      b.planes,
+      {.is_paper = is_paper(o),
+       .alcove_area = o.alcove_area,
+       .visibility = {
+           .engine = o.visibility, .ns = o.ns, .nr = o.nr, .is_party_wall_rule = !is_paper(o)}});
+  b.timings.visibility = b.segments.visibility_seconds;
+  b.timings.segments = b.segments.aggregation_seconds;
+  Stopwatch watch(b.timings.similarity);
+  b.descriptors = describe_segments(b.planes, b.segments, b.source.name, {.seed = o.seed});
+}
+
+/// Layer k's planes join those of coarser layers, which are cut first: a finer partition refines
+/// the coarser one.
+void add_layer_planes(const Building& b, int k, const Options& o, std::vector<int>& order) {
+  std::vector<char> is_taken(b.planes.planes.size(), 0);
+  for (const int plane : order) is_taken[plane] = 1;
+  for (const int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, k,
+                                      {.is_paper = is_paper(o), .layers = o.layers}))
+    if (!is_taken[plane]) order.push_back(plane);
+}
+
+/// Metres: what is no detail on layer k. An exact model of few planes has none to give away.
+double tolerance(const Building& b, int k, const Options& o) {
+  if (is_paper(o)) return 0;
+  const bool is_plain = b.planes.distance <= kLeastDistance && b.planes.planes.size() <= kFewPlanes;
+  const double least = kLeastTolerance * b.planes.box.diagonal();
+  if (is_plain) return std::min(least, b.planes.distance);
+  const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;
+  return std::max(share * b.planes.box.diagonal(), least);
+}
+
+/// The layer of these planes; where round shapes have fewer sides, with planes of its own.
+Extraction extract_planes(const Building& b, int k, const std::vector<RoundShape>& shapes,
+                          const std::vector<int>& planes, std::vector<std::vector<int>> spares,
+                          Sight& sight, const Options& o, std::vector<int>& joined) {
+  const ExtractionOptions options{.is_paper = is_paper(o),
+                                  .nr = o.nr,
+                                  .tolerance = tolerance(b, k, o),
+                                  .is_finest = k + 1 == o.layers};
+  if (shapes.empty() || options.is_finest)
+    return extract_layer(b.planes, planes, spares, sight, options, joined);
+  const ReducedLayer reduced =
+      reduce_layer(b.planes, planes, shapes, 2 * M_PI / (kSides * std::pow(2, k)));
+  for (std::vector<int>& set : spares)
+    std::erase_if(set, [&](int p) { return b.planes.has_side(p); });
+  std::erase_if(spares, [](const std::vector<int>& set) { return set.empty(); });
+  Sight seen(reduced.planes);  // a chord of the real surface would be taken for an inside
+  Extraction result = extract_layer(reduced.planes, reduced.which, spares, seen, options, joined);
+  for (PolygonMesh::Facet& f : result.mesh.facets)
+    if (f.plane >= 0) f.plane = reduced.real[f.plane];
+  return result;
+}
+
+/// `planes`: in the order of cutting, those of coarser layers, and then of this one too.
+void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
+             std::vector<int>& planes, Sight& sight, const Options& o) {
+  try {
+    add_layer_planes(b, layer.layer, o, planes);
+    std::vector<std::vector<int>> spares;
+    if (!is_paper(o) && layer.layer == 0 && o.layers > 1)
+      spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
+    std::vector<int> joined;
+    Extraction result =
+        extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o, joined);
+    planes.insert(planes.end(), joined.begin(), joined.end());
+    layer.mesh = std::move(result.mesh);
+    if (layer.mesh.triangles.empty()) layer.failure = kEmptyLayer;
+    for (const std::string& w : result.warnings)
+      b.warnings.push_back("layer " + std::to_string(layer.layer) + ": " + w);
+  } catch (const Error& e) {
+    layer.failure = e.what();
+  }
+}
+
+bool is_richer(const PolygonMesh& a, const PolygonMesh& b) {
+  return a.vertices.size() > b.vertices.size() || a.triangles.size() > b.triangles.size() ||
+         a.facets.size() > b.facets.size();
+}
+
+/// Why a coarser layer cannot stand before a finer one. The volume is asked first: what lost a wing
+/// may be richer as well.
+StandIn misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volume_checked) {
+  const double volume = signed_volume(fine.mesh());
+  const double change = std::abs(signed_volume(coarse.mesh()) - volume);
+  if (is_volume_checked && change > kVolumeChange * volume) return StandIn::kVolume;
+  return is_richer(coarse, fine) ? StandIn::kRicher : StandIn::kNone;
+}
+
+/// Detail rises along the chain, and (robust) all layers enclose about the same building.
+void keep_chain_sound(Building& b, const Options& o) {
+  for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
+    Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
+    if (!coarse.failure.empty() || !fine.failure.empty()) continue;
+    coarse.stand_in = misfit(coarse.mesh, fine.mesh, !is_paper(o));
+    if (coarse.stand_in == StandIn::kNone && b.layers.back().failure.empty())
+      coarse.stand_in = misfit(coarse.mesh, b.layers.back().mesh, !is_paper(o));  // changes add up
+    if (coarse.stand_in == StandIn::kNone) continue;
+    if (coarse.stand_in == StandIn::kRicher)
+      b.warnings.push_back("layer " + std::to_string(k) + " " + describe(coarse.stand_in));
+    coarse.mesh = fine.mesh;
+  }
+}
+
+/// From the building's frame to axes parallel to the world's.
+void unturn(PolygonMesh& mesh, const Frame& frame) {
+  const Frame turn{Vec3::Zero(), frame.yaw};
+  for (Vec3& v : mesh.vertices) v = turn.to_world(v);
+  for (auto& f : mesh.facets) f.normal = turn.to_world(f.normal);
+}
+
+void measure(const DistanceGauge& source, Layer& layer) {
+  layer.distances = source.measure_to(layer.mesh.mesh());
+  layer.validity = check_validity(layer.mesh.mesh());
+  layer.validity.polygons = static_cast<int>(layer.mesh.facets.size());
+}
+
+/// Layers that did not fail, each with its sight.
+void look_at_layers(Building& b) {
+  std::vector<Mesh> meshes;
+  std::vector<Layer*> shown;
+  for (Layer& layer : b.layers)
+    if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
+  std::vector<LayerSight> sights = measure_sights(meshes);
+  for (std::size_t i = 0; i < shown.size(); ++i) shown[i]->sight = std::move(sights[i]);
+}
+
+std::vector<char> floaters(const Planes& planes) {
+  std::vector<char> is_floater;
+  for (const int plane : planes.plane_of_item) is_floater.push_back(plane == kFloater);
+  if (std::none_of(is_floater.begin(), is_floater.end(), [](char c) { return c; }))
+    is_floater.clear();
+  return is_floater;
+}
+
+/// One warning for each layer that most buildings have nothing for.
+std::vector<std::string> idle_layers(const std::vector<BuildingSights>& buildings, int layers) {
+  std::vector<std::size_t> shown(static_cast<std::size_t>(layers), 0), alike = shown;
+  for (const BuildingSights& b : buildings)
+    for (std::size_t i = 0; i + 1 < b.layers.size(); ++i)
+      ++shown[b.layers[i]], alike[b.layers[i]] += b.sights[i].is_like_finer;
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    if (2 * alike[k] > shown[k])
+      warnings.push_back("layers " + std::to_string(k) + " and " + std::to_string(k + 1) +
+                         " are alike in " + std::to_string(alike[k]) + " of " +
+                         std::to_string(shown[k]) +
+                         " buildings, which have one level for both; --layers " +
+                         std::to_string(std::max(1, layers - 1)) +
+                         " asks for fewer, --layering size and --beta part them elsewhere");
+  return warnings;
+}
+
+BuildingSights sights_of(const Building& b) {
+  BuildingSights out;
+  for (const Layer& layer : b.layers)
+    if (layer.failure.empty()) out.layers.push_back(layer.layer), out.sights.push_back(layer.sight);
+  return out;
+}
+
+/// Where the buildings of each file stand in the scene, which is sorted by name.
+std::vector<std::vector<std::size_t>> positions_by_name(const Inventory& inventory) {
+  std::vector<std::tuple<std::string, std::size_t, std::size_t>> order;  // name, file, place in it
+  std::vector<std::vector<std::size_t>> positions(inventory.files.size());
+  for (std::size_t f = 0; f < positions.size(); ++f) {
+    positions[f].resize(inventory.files[f].names.size());
+    for (std::size_t i = 0; i < positions[f].size(); ++i)
+      order.emplace_back(inventory.files[f].names[i], f, i);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    positions[std::get<1>(order[k])][std::get<2>(order[k])] = k;
+  return positions;
+}
+
+}  // namespace
+
+const char* to_string(StandIn reason) {
+  switch (reason) {
+    case StandIn::kNone:
+      return "";
+    case StandIn::kRicher:
+      return "richer";
+    case StandIn::kInvented:
+      return "invented";
+    case StandIn::kVolume:
+      return "volume";
+  }
+  return "";
+}
+
+bool is_failure(StandIn reason) {
+  return reason == StandIn::kInvented || reason == StandIn::kVolume;
+}
+
+bool Building::has_lost() const {
+  return std::any_of(left_out.begin(), left_out.end(), is_loss) ||
+         std::any_of(layers.begin(), layers.end(),
+                     [](const Layer& l) { return is_failure(l.stand_in); });
+}
+
+bool Building::has_failed() const {
+  return !failure.empty() || std::any_of(layers.begin(), layers.end(),
+                                         [](const Layer& l) { return !l.failure.empty(); });
+}
+
+Counts count(const Building& b) {
+  const std::vector<Vec3>& points =
+      b.source.is_mesh() ? b.source.mesh.vertices : b.source.cloud.points;
+  return {points.size(), b.source.mesh.faces.size(), b.planes.planes.size(),
+          bounding_box(points).diagonal()};
+}
+
+void drop_geometry(Building& b) {
+  b.source.mesh = {};
+  b.source.cloud = {};
+  b.source.face_object = std::vector<int>();
+  b.planes = {};
+}
+
+Building segment_building(Turn turn, const Options& options) {
+  Building b;
+  Source& source = turn.source;
+  try {
+    if (turn.problem) throw *turn.problem;
+    b.frame = main_frame(source);
+    b.timings.read = source.read_seconds;
+    b.source = localize(source, b.frame);
+    if (!is_paper(options)) b.source = remove_hidden(separate_ground(std::move(b.source)));
+    find_segments(b, options);
+    b.left_out = b.source.left_out;
+    if (const std::vector<char> parted = floaters(b.planes); !parted.empty())
+      b.left_out.push_back(
+          measure_left_out(b.source, parted, LeftOut::Reason::kFloater, b.left_out));
+  } catch (const Error& e) {
+    b.failure = e.what();
+  } catch (const std::exception& e) {  // a library gave up: this building's problem only
+    b.failure = source.name + ": " + e.what();
+  }
+  if (b.source.name.empty())
+    b.source.name = source.name, b.source.given_name = source.given_name,
+    b.source.path = source.path;
+  b.counts = count(b);
+  append(b.warnings, b.source.warnings);
+  append(b.warnings, b.planes.warnings);
+  append(b.warnings, b.segments.warnings);
+  return b;
+}
+
+void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
+  Stopwatch watch(scene.coanalysis_seconds);
+  if (prior && prior->layers != options.layers)
+    throw Error(Stage::kUsage, "--prior",
+                "it has " + std::to_string(prior->layers) + " layers, not " +
+                    std::to_string(options.layers));
+  scene.has_prior = prior != nullptr;
+  std::vector<SelectionBuilding> input;
+  for (const Building& b : scene.buildings) input.push_back({b.descriptors, b.segments.coverage});
+  scene.selection = select_layer0(input, {.is_paper = is_paper(options),
+                                          .beta = options.beta,
+                                          .lambda = options.lambda,
+                                          .eta = options.eta,
+                                          .seed = options.seed,
+                                          .gap = options.gap,
+                                          .prior = prior});
+  std::vector<Descriptor> rest;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i)
+    for (std::size_t s = 0; s < scene.buildings[i].descriptors.size(); ++s)
+      if (!scene.selection.is_layer0[i][s]) rest.push_back(scene.buildings[i].descriptors[s]);
+  const ClusteringOptions clustering{
+      .is_paper = is_paper(options),
+      .layering = options.is_size_layering ? Layering::kSize : Layering::kSpectral,
+      .layers = options.layers,
+      .eta = options.eta,
+      .seed = options.seed};
+  scene.clustering =
+      prior ? classify_segments(rest, *prior, clustering) : cluster_segments(rest, clustering);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
+    Building& b = scene.buildings[i];
+    b.layer_of_segment.assign(b.descriptors.size(), 0);
+    for (std::size_t s = 0; s < b.descriptors.size(); ++s)
+      if (!scene.selection.is_layer0[i][s]) b.layer_of_segment[s] = scene.clustering.layer[next++];
+  }
+}
+
+void mesh_building(Building& b, const Options& options) {
+  if (!b.failure.empty()) return;
+  try {
+    Sight sight(b.planes);
+    const std::vector<RoundShape> shapes =
+        is_paper(options) ? std::vector<RoundShape>() : find_rounds(b.source);
+    mark_sides(shapes, b.planes);
+    std::vector<int> planes;
+    for (int k = 0; k < options.layers; ++k) {
+      Layer layer;
+      layer.layer = k;
+      layer.segments = static_cast<int>(std::count_if(
+          b.layer_of_segment.begin(), b.layer_of_segment.end(), [k](int l) { return l <= k; }));
+      Stopwatch watch(b.timings.extraction);
+      extract(b, layer, shapes, planes, sight, options);
+      b.layers.push_back(std::move(layer));
+    }
+    keep_chain_sound(b, options);
+    Stopwatch watch(b.timings.measure);
+    const Surface surface = surface_of(b);
+    weigh_finest(surface, b);
+    if (!is_paper(options)) b.failure = judge_building(surface, b);
+    if (!b.failure.empty()) {
+      b.layers.clear();
+      forget_losses(b);
+      return;
+    }
+    replace_invented(surface, b);
+    const DistanceGauge source(b.source, {}, floaters(b.planes));
+    for (Layer& layer : b.layers)
+      if (layer.failure.empty()) measure(source, layer);
+    look_at_layers(b);
+    for (Layer& layer : b.layers) unturn(layer.mesh, b.frame);
+  } catch (const std::exception& e) {
+    b.layers.clear();
+    b.failure = b.source.name + ": " + e.what();
+  }
+}
+
+void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
+                     const std::vector<BuildingSights>& prior) {
+  std::vector<BuildingSights> own;
+  for (const Building& b : scene.buildings) own.push_back(sights_of(b));
+  Switching& switching = scene.switching;
+  switching.options = options;
+  switching.is_from_prior = !prior.empty();
+  switching.layers = prior.empty() ? plan_scene_switches(own, layers, options)
+                                   : plan_scene_switches(prior, layers, options, own);
+  switching.warnings = idle_layers(own, layers);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::vector<double> gsds = own_gsds(own[i], options);
+    std::size_t next = 0;
+    for (Layer& layer : scene.buildings[i].layers) {
+      if (!layer.failure.empty()) continue;
+      layer.own_gsd = layer.gsd = gsds[next++];
+      if (options.scope == SwitchScope::kScene && next < gsds.size())
+        layer.gsd = switching.layers[layer.layer].gsd;
+    }
+  }
+}
+
+std::vector<PlacedPart> place_parts(const Building& b, const Source& source, const Truth& truth) {
+  const auto named = std::find_if(truth.begin(), truth.end(),
+                                  [&](const TruthBuilding& t) { return t.name == source.name; });
+  if (named == truth.end() || b.has_failed()) return {};
+  const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
+  std::vector<Mesh> layers;
+  for (const Layer& layer : b.layers) {
+    layers.push_back(layer.mesh.mesh());
+    for (Vec3& v : layers.back().vertices) v = turn.to_local(v);
+  }
+  return place_parts(source, *named, layers);
+}
+
+void for_each_source(const Inventory& inventory, const Reader& read,
+                     const std::function<void(Turn)>& body) {
+  const std::vector<std::vector<std::size_t>> positions = positions_by_name(inventory);
+  parallel_for(inventory.files.size(), [&](std::size_t f) {
+    const InputFile& file = inventory.files[f];
+    std::vector<Source> sources(file.names.size());
+    std::optional<Error> problem;
+    try {
+      sources = read(f);
+    } catch (const Error& e) {
+      problem = e;
+    } catch (const std::exception& e) {  // a library gave up, or memory
+      problem = Error(Stage::kInput, file.path, std::string("cannot be read: ") + e.what());
+    }
+    if (problem) {
+      sources.resize(file.names.size());
+      for (std::size_t i = 0; i < sources.size(); ++i)
+        sources[i].name = file.names[i], sources[i].path = file.path;
+    }
+    parallel_for(sources.size(), [&](std::size_t i) {
+      body({std::move(sources[i]), positions[f][i], problem});
+    });
+  });
+}
+
+Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
+                  Depot& depot, const Progress& progress, const Prior* prior) {
+  Scene scene;
+  scene.failures = inventory.failures;
+  scene.warnings = inventory.warnings;
+  scene.buildings.resize(inventory.building_count());
+  std::mutex mutex;
+  int done = 0;
+  const auto report = [&](const Building& b, const char* stage) {
+    const std::lock_guard lock(mutex);
+    if (progress) progress(b.source.name, stage, ++done, static_cast<int>(scene.buildings.size()));
+  };
+  for_each_source(inventory, read, [&](Turn turn) {
+    Building& b = scene.buildings[turn.position];
+    b = segment_building(std::move(turn), options);
+    depot.put(b);
+    report(b, "segments");
+  });
+  analyze_scene(scene, options, prior);
+  done = 0;
+  parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    Building& b = scene.buildings[i];
+    depot.get(b);
+    mesh_building(b, options);
+    depot.drop(b);
+    report(b, "layers");
+  });
+  return scene;
+}
+
+Scene build_scene(ReadResult input, const Options& options, const Prior* prior) {
+  Inventory inventory{{}, std::move(input.failures), {}};
+  for (const Source& s : input.sources) inventory.files.push_back({s.path, {s.name}});
+  const Reader take = [&](std::size_t i) {
+    std::vector<Source> one;
+    one.push_back(std::move(input.sources[i]));
+    return one;
+  };
+  Depot memory;
+  return build_scene(inventory, take, options, memory, {}, prior);
+}
+
+}  // namespace colod

@@ -1,0 +1,230 @@
+// Based on: paper section 3.1 ("primary planes"): region growing, a region's outline as α-shape.
+// Differs: --rules paper takes what CGAL's region growing gives at the options' distance, angle and
+// count. Robust drops floaters, measures the noise and grows at three times a wall's residual,
+// filters by area relative to the building, merges and aligns planes, and repairs their orientation
+// by rays. Notation: item = face of a mesh or point of a cloud; region = items on a plane, not yet
+// a Plane.
+#include "planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "parts.h"
+
+namespace colod {
+namespace {
+
+using namespace regions;
+
+// Three residuals of a whole wall, which on scans is 2.3 times that of 1.5 m of it (0.012 m against
+// 0.027 m on simulated photogrammetry).
+constexpr double kNoiseFactor = 7;
+constexpr double kMoveShare = 1.0 / 3;  // of the growing distance: what aligning may cost
+constexpr double kLeastMove = 0.0005;   // metres: likewise without noise; files have mm
+constexpr double kOffsetWidth = 0.6;    // of the growing distance: parallel planes are one …
+constexpr double kLeastOffset = 0.05;   // metres: … and closer than this …
+constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
+constexpr double kPlainDistance = 0.003;      // metres: planes of exact models that have few
+constexpr double kMostDistance = 0.2;         // metres
+constexpr double kLeastShare = 1e-4;          // of the building's area: the least region …
+constexpr double kLeastShareExact = 3e-5;  // … of an exact model: large houses have windows, too
+constexpr double kMostShare = 0.01;        // a region this large is never too small
+constexpr std::size_t kMostPlanes = 4000;
+constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
+
+double used_area(const Items& items) {
+  double sum = 0;
+  for (int i = 0; i < items.size(); ++i)
+    if (items.is_used[i]) sum += items.area[i];
+  return sum;
+}
+
+Box used_box(const Items& items) {
+  Box box;
+  std::array<Vec3, 3> corner;
+  for (int i = 0; i < items.size(); ++i)
+    for (int k = items.is_used[i] ? items.corners(i, corner) : 0; k > 0; --k)
+      box.extend(corner[k - 1]);
+  return box;
+}
+
+/// The foot of a cloud: a few points low on its walls are too few for a component, but they say
+/// where the walls end. Single points below are noise.
+void lower_to_foot(const Items& items, Box& box) {
+  constexpr double kBeside = 1, kTogether = 0.5;  // metres
+  constexpr std::size_t kLeastPoints = 4;
+  std::vector<double> heights;
+  for (int i = 0; i < items.size(); ++i) {
+    const Vec3& p = items.source->cloud.points[i];
+    const Vec3 beyond = (box.min - p).cwiseMax(p - box.max);  // > 0: out of the box
+    if (p.allFinite() && p.z() < box.min.z() && beyond.head<2>().maxCoeff() < kBeside)
+      heights.push_back(p.z());
+  }
+  std::sort(heights.begin(), heights.end());
+  for (std::size_t k = 0; k + kLeastPoints <= heights.size(); ++k)
+    if (heights[k + kLeastPoints - 1] - heights[k] < kTogether) {
+      box.min.z() = heights[k];
+      return;
+    }
+}
+
+double growing_distance(double noise, const Box& box, const PlaneOptions& options) {
+  const double most = std::min({kMostDistance, options.distance, 0.02 * box.diagonal()});
+  return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
+}
+
+/// What noise excuses is aligned; an exact model keeps its planes, one of few planes each of them.
+AlignOptions align_options(double noise, double distance, const Box& box) {
+  const double most = kMoveShare * distance;
+  const double excused = std::max(kLeastMove, kMoveShare * kNoiseFactor * noise);
+  const double together = std::min(kLeastOffset, kLeastOffsetShare * box.diagonal());
+  const double width = kOffsetWidth * distance;
+  return {.least_move = std::min(excused, most),
+          .most_move = most,
+          .offset_width = distance > kPlainDistance ? std::max(width, together) : width};
+}
+
+/// Flat to the millimetre, as what people draw.
+bool is_exact(double noise) { return kNoiseFactor * noise <= kPlainDistance; }
+
+/// The regions of an exact model of few planes, grown so tightly that walls which bend by a
+/// centimetre stay two; none: it is not one.
+std::vector<Region> plain_regions(const Items& items, double noise, double angle_deg) {
+  if (!is_exact(noise)) return {};
+  std::vector<Region> regions = grow_regions(items, items.normal, {kPlainDistance, angle_deg});
+  if (regions.size() > kFewPlanes) regions.clear();
+  return regions;
+}
+
+/// m²: regions below are no planes. Rougher surfaces need larger ones.
+double least_area(double noise, double distance, double total) {
+  const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
+  const double share = is_exact(noise) ? kLeastShareExact : kLeastShare;
+  return std::min(std::max(absolute, share * total), kMostShare * total);
+}
+
+/// Drops small regions, but never the largest one.
+void drop_small(const Items& items, double least, int min_points, std::vector<Region>& regions) {
+  const auto is_small = [&](const Region& r) {
+    return r.area < least || (!items.is_mesh() && static_cast<int>(r.items.size()) < min_points);
+  };
+  const bool is_none = std::all_of(regions.begin(), regions.end(), is_small);
+  if (is_none && !regions.empty())
+    regions.resize(1);
+  else
+    std::erase_if(regions, is_small);
+}
+
+void limit_count(std::vector<Region>& regions, std::vector<std::string>& warnings) {
+  if (regions.size() <= kMostPlanes) return;
+  warnings.push_back("kept the largest " + std::to_string(kMostPlanes) + " of " +
+                     std::to_string(regions.size()) + " planes");
+  regions.resize(kMostPlanes);
+}
+
+void set_used(const std::vector<Region>& regions, bool is_used, Items& items) {
+  for (const Region& r : regions)
+    for (const int i : r.items) items.is_used[i] = is_used;
+}
+
+/// The regions of the items in use, which have a part of the building's `total` square metres.
+std::vector<Region> flat_regions(const Items& items, const Box& box, double total,
+                                 const PlaneOptions& options, Planes& result) {
+  const double noise = estimate_noise(items);
+  result.distance = growing_distance(noise, box, options);
+  std::vector<Region> regions = plain_regions(items, noise, options.angle_deg);
+  if (!regions.empty()) {
+    result.distance = std::min(kPlainDistance, result.distance);
+  } else {
+    const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
+    regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
+  }
+  const double least = least_area(noise, result.distance, total);
+  drop_small(items, least / 4, options.min_points / 2, regions);
+  limit_count(regions, result.warnings);
+  regularize(items, result.distance, align_options(noise, result.distance, box), regions);
+  drop_small(items, least, options.min_points, regions);
+  return regions;
+}
+
+std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
+  drop_floaters(items, result.warnings);
+  const double total = used_area(items);
+  const Box box = used_box(items);
+  std::vector<Region> round = round_regions(items);
+  set_used(round, false, items);
+  std::vector<Region> regions = flat_regions(items, box, total, options, result);
+  set_used(round, true, items);
+  std::move(round.begin(), round.end(), std::back_inserter(regions));
+  absorb_rest(items, result.distance, regions);
+  return regions;
+}
+
+/// Towards where most of the region's area looks.
+void orient_by_items(const Items& items, std::vector<Region>& regions) {
+  for (Region& r : regions) {
+    double vote = 0;
+    for (const int i : r.items) vote += items.area[i] * r.normal.dot(items.normal[i]);
+    if (vote < 0) r.normal = -r.normal, r.offset = -r.offset;
+  }
+}
+
+std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, double distance,
+                             bool is_robust) {
+  std::vector<Outline> outlines = make_outlines(items, regions, distance, is_robust);
+  std::vector<Plane> planes;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (outlines[r].triangles.empty()) continue;
+    Plane p;
+    p.normal = regions[r].normal;
+    p.offset = regions[r].offset;
+    p.area = items.is_mesh() ? regions[r].area : outline_area(outlines[r]);
+    const Vec3 c = regions[r].moments.mean();
+    p.centroid = c - p.signed_distance(c) * p.normal;
+    p.items = std::move(regions[r].items);
+    p.outline = std::move(outlines[r]);
+    planes.push_back(std::move(p));
+  }
+  return planes;
+}
+
+void sort_planes(std::vector<Plane>& planes) {
+  const auto key = [](const Plane& p) {
+    return std::make_tuple(-p.area, p.centroid.x(), p.centroid.y(), p.centroid.z(),
+                           p.items.front());
+  };
+  std::sort(planes.begin(), planes.end(),
+            [&](const Plane& a, const Plane& b) { return key(a) < key(b); });
+}
+
+}  // namespace
+
+Planes detect_planes(const Source& source, const PlaneOptions& options) {
+  Planes result;
+  Items items = collect_items(source);
+  result.distance = options.distance;
+  std::vector<Region> regions =
+      options.is_paper ? grow_with_cgal(items, options) : robust_regions(items, options, result);
+  orient_by_items(items, regions);
+  result.planes = to_planes(items, regions, result.distance, !options.is_paper);
+  if (result.planes.empty())
+    throw Error(Stage::kProcess, source.name, "no plane found: the surface is empty or too small");
+  if (!options.is_paper)
+    if (const int flipped = repair_orientation(result.planes, !items.is_mesh()); flipped > 0)
+      result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
+  sort_planes(result.planes);
+  result.box = used_box(items);
+  if (!options.is_paper && !items.is_mesh()) lower_to_foot(items, result.box);
+  result.plane_of_item.assign(items.size(), -1);
+  for (int i = 0; i < items.size(); ++i)
+    if (items.is_floater[i]) result.plane_of_item[i] = kFloater;
+  for (std::size_t p = 0; p < result.planes.size(); ++p)
+    for (const int i : result.planes[p].items) result.plane_of_item[i] = static_cast<int>(p);
+  for (const Plane& p : result.planes) result.total_area += items.is_mesh() ? 0 : p.area;
+  if (items.is_mesh()) result.total_area = used_area(items);
+  return result;
+}
+
+}  // namespace colod

@@ -1,0 +1,47 @@
+// Source → Planes: the planar regions of a building with their outlines, oriented outward.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace colod {
+
+/// Metres: planes grow at least this far under robust rules, on small buildings 2 % of the
+/// diagonal; those of exact models that have few, 3 mm (planes.cpp).
+constexpr double kLeastDistance = 0.03;
+/// A model has none to spare of so few planes: nothing is merged or left out where it is exact.
+constexpr std::size_t kFewPlanes = 12;
+
+/// In plane_of_item: no part of the building, left out from the start.
+constexpr int kFloater = -2;
+
+struct PlaneOptions {
+  bool is_paper = false;  ///< to the letter: CGAL region growing at
+                          ///< `distance`/`angle_deg`/`min_points`, nothing else
+  double distance = 0.2;  ///< metres; robust: the most it may be, the value used is found from the
+                          ///< data (planes.cpp)
+  double angle_deg = 30;
+  int min_points = 20;  ///< robust: regions are filtered by area instead; for clouds both hold
+};
+
+struct Planes {
+  std::vector<Plane> planes;       ///< largest area first, ties by centroid
+  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none, kFloater
+  Box box;                         ///< of the source without its floaters
+  double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
+  double distance = 0;    ///< metres: the region growing distance used; kLeastDistance or less
+                          ///< where no noise asks for more
+  std::vector<char> is_side;  ///< per plane: of a round shape (rounds/rounds.h), exact and as good
+                              ///< as its neighbours, however small; empty: none is
+  std::vector<std::string> warnings;
+
+  bool has_side(int plane) const { return !is_side.empty() && is_side[plane]; }
+};
+
+/// `source` is in its local frame (read/frame.h). Deterministic; uses threads. Throws
+/// Error{kProcess} when no plane is found.
+Planes detect_planes(const Source& source, const PlaneOptions& options = {});
+
+}  // namespace colod

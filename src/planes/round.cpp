@@ -1,0 +1,40 @@
+// Based on: rounds/rounds.h. Differs: --rules robust only. The sides of a round shape are planes of
+// their own from the start: grown like walls they join in patches, and what is left of them has no
+// plane. Notation: –
+#include <algorithm>
+#include <cmath>
+
+#include "parts.h"
+#include "rounds/rounds.h"
+
+namespace colod::regions {
+namespace {
+
+constexpr std::size_t kMostSides = 2500;  // of a shape: more take half a minute to cut
+constexpr double kFinest = 0.01;  // metres between a side and its arc: twice in both directions
+
+Region side_region(const Items& items, const RoundShape& shape, const RoundShape::Side& side) {
+  Region r;
+  for (const int i : side.faces)
+    if (items.is_used[i]) r.items.push_back(i), r.moments.add_item(items, i);
+  r.area = r.moments.weight;
+  r.normal = shape.normal(side.row, side.column);
+  r.offset = shape.offset(side.row, side.column);
+  return r;
+}
+
+}  // namespace
+
+std::vector<Region> round_regions(const Items& items) {
+  std::vector<Region> regions;
+  for (const RoundShape& shape : find_rounds(*items.source)) {
+    const bool is_fine = shape.sides.size() <= kMostSides;
+    const RoundShape drawn = is_fine ? shape : reduce_round(shape, turn_within(shape, kFinest));
+    for (const RoundShape::Side& side : drawn.sides)
+      if (Region r = side_region(items, drawn, side); !r.items.empty())
+        regions.push_back(std::move(r));
+  }
+  return regions;
+}
+
+}  // namespace colod::regions

@@ -1,0 +1,212 @@
+#include "report.h"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "exporters/exporter.h"
+#include "pipeline/losses.h"
+#include "scene/left_out.h"
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parameters_json(const Options& options) {
+  Json json;
+  json["rules"] = options.rules == Rules::kPaper ? "paper" : "robust";
+  json["visibility"] = name_of(options.visibility);
+  json["layering"] = options.is_size_layering ? "size" : "spectral";
+  for (const OptionInfo& info : option_table()) {
+    if (info.is_integer)
+      json[info.name] = static_cast<std::int64_t>(info.get(options));
+    else
+      json[info.name] = info.get(options);
+  }
+  return json;
+}
+
+/// A measure that may be unknown, which is negative inside the program and null in the report.
+Json known(double value) { return value < 0 ? Json() : Json(value); }
+
+Json layer_json(const Layer& layer) {
+  Json json{{"layer", layer.layer}, {"segments", layer.segments}};
+  if (!layer.failure.empty()) {
+    json["failure"] = layer.failure;
+    return json;
+  }
+  json["vertices"] = layer.validity.vertices;
+  json["faces"] = layer.validity.faces;
+  json["polygons"] = layer.validity.polygons;
+  json["watertight"] = layer.validity.is_watertight;
+  json["manifold"] = layer.validity.is_manifold;
+  json["self_intersections"] = layer.validity.self_intersections;
+  json["components"] = layer.validity.components;
+  json["enclosed_components"] = layer.validity.enclosed_components;
+  json["least_width"] = layer.validity.least_width;
+  json["volume"] = layer.validity.volume;
+  json["hausdorff"] = layer.distances.a_to_b;
+  json["hausdorff_relative"] = layer.distances.relative;
+  json["mean_distance"] = layer.distances.mean_a_to_b;
+  const Spread& d = layer.distances.taken;
+  json["distance"] = {{"mean", d.mean}, {"p95", d.p95}, {"p99", d.p99}, {"max", d.max}};
+  json["deviation"] = layer.sight.deviation;
+  json["gsd"] = layer.gsd;
+  json["own_gsd"] = layer.own_gsd;
+  json["invented"] = known(layer.invented);
+  json["like_finer"] = layer.sight.is_like_finer;
+  if (layer.stand_in != StandIn::kNone)
+    json["stand_in"] = {{"reason", to_string(layer.stand_in)},
+                        {"failure", is_failure(layer.stand_in)},
+                        {"message", describe(layer.stand_in)}};
+  if (layer.bytes > 0) json["bytes"] = layer.bytes;
+  return json;
+}
+
+Json left_out_json(const LeftOut& l) {
+  return {{"reason", to_string(l.reason)},
+          {"area", l.area},
+          {"share", l.share},
+          {"volume", known(l.volume)},
+          {"volume_share", known(l.volume_share)},
+          {"farthest", l.farthest}};
+}
+
+Json building_json(const Building& b, bool has_prior) {
+  Json json{{"name", b.source.name},
+            {"given_name", b.source.given_name},
+            {"source", b.source.path},
+            {"vertices", b.counts.vertices},
+            {"faces", b.counts.faces},
+            {"planes", b.counts.planes},
+            {"segments", b.segments.segments.size()},
+            {"prior", has_prior},
+            {"diagonal", b.counts.diagonal},
+            {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+  json["solid_volume"] = known(b.solid);
+  json["left_out"] = Json::array();
+  for (const LeftOut& l : b.left_out) json["left_out"].push_back(left_out_json(l));
+  json["left_out_total"] = left_out_json(total_of(b.left_out));
+  json["left_out_total"].erase("reason");
+  json["layers"] = Json::array();
+  for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
+  json["timings"] = {{"read", b.timings.read},
+                     {"planes", b.timings.planes},
+                     {"visibility", b.timings.visibility},
+                     {"segments", b.timings.segments},
+                     {"similarity", b.timings.similarity},
+                     {"extraction", b.timings.extraction},
+                     {"measure", b.timings.measure},
+                     {"pictures", b.timings.pictures},
+                     {"export", b.timings.export_}};
+  std::vector<std::string> warnings = loss_warnings(b);
+  json["heavy_warnings"] = warnings.size();
+  warnings.insert(warnings.end(), b.warnings.begin(), b.warnings.end());
+  json["warnings"] = warnings;
+  json["lost"] = b.has_lost();
+  if (!b.failure.empty()) json["failure"] = b.failure;
+  return json;
+}
+
+Json switching_json(const Switching& switching) {
+  const SwitchFacts viewport;
+  const double view = 2 * std::tan(viewport.fov_y_deg * std::numbers::pi / 360);
+  const SwitchOptions& o = switching.options;
+  Json json = {{"measure", to_string(o.measure)},
+               {"scope", to_string(o.scope)},
+               {"visual_error", o.visual_error},
+               {"pixel_error", o.pixel_error},
+               {"share", o.share},
+               {"viewport_height", viewport.viewport_height},
+               {"fov_y_deg", viewport.fov_y_deg},
+               {"from_prior", switching.is_from_prior},
+               {"warnings", switching.warnings},
+               {"layers", Json::array()}};
+  for (std::size_t k = 0; k < switching.layers.size(); ++k) {
+    const SceneSwitch& s = switching.layers[k];
+    json["layers"].push_back({{"layer", k},
+                              {"gsd", s.gsd},
+                              {"switch_distance", s.gsd * viewport.viewport_height / view},
+                              {"buildings", s.buildings},
+                              {"too_coarse", s.too_coarse},
+                              {"too_coarse_factor", s.coarse_factor},
+                              {"too_fine", s.too_fine},
+                              {"too_fine_factor", s.fine_factor}});
+  }
+  return json;
+}
+
+Json coanalysis_json(const Scene& scene) {
+  std::size_t segments = 0;
+  for (const Building& b : scene.buildings) segments += b.segments.segments.size();
+  std::vector<std::string> warnings = scene.selection.warnings;
+  warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
+                  scene.clustering.warnings.end());
+  return {{"segments", segments},
+          {"buildings", scene.buildings.size()},
+          {"objective", scene.selection.objective},
+          {"bound", scene.selection.bound},
+          {"gap", scene.selection.gap},
+          {"status", to_string(scene.selection.status)},
+          {"seconds", scene.coanalysis_seconds},
+          {"warnings", warnings}};
+}
+
+/// How much is amiss, over all buildings.
+void count_losses(const Scene& scene, Json& totals) {
+  std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0;
+  for (const Building& b : scene.buildings) {
+    failed += !b.failure.empty();
+    for (const LeftOut& l : b.left_out) bodies += is_loss(l);
+    for (const Layer& layer : b.layers)
+      layers += !layer.failure.empty(), stand_ins += is_failure(layer.stand_in);
+  }
+  totals["failed_buildings"] = failed;
+  totals["failed_layers"] = layers;
+  totals["stand_in_layers"] = stand_ins;
+  totals["lost_bodies"] = bodies;
+}
+
+}  // namespace
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string report_json(const Scene& scene, const Options& options, const RunTotals& totals) {
+  std::uint64_t rays = 0;
+  double ray_seconds = 0;
+  for (const Building& b : scene.buildings)
+    rays += b.segments.rays, ray_seconds += b.segments.visibility_seconds;
+  Json json;
+  json["colod"] = COLOD_VERSION;
+  json["parameters"] = parameters_json(options);
+  json["totals"] = {
+      {"seconds", totals.seconds},
+      {"export_seconds", scene.export_seconds},
+      {"peak_memory_bytes", totals.peak_memory_bytes},
+      {"rays", rays},
+      {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
+  count_losses(scene, json["totals"]);
+  json["coanalysis"] = coanalysis_json(scene);
+  json["switching"] = switching_json(scene.switching);
+  if (!scene.consistency.empty())
+    json["consistency"] = Json::parse(consistency_json(scene.consistency));
+  json["warnings"] = scene.warnings;
+  json["buildings"] = Json::array();
+  for (const Building& b : scene.buildings)
+    json["buildings"].push_back(building_json(b, scene.has_prior));
+  json["failures"] = Json::array();
+  for (const ReadFailure& f : scene.failures)
+    json["failures"].push_back({{"source", f.path}, {"message", f.message}});
+  if (!scene.tileset_failure.empty())
+    json["failures"].push_back({{"source", "tileset.json"}, {"message", scene.tileset_failure}});
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace colod

@@ -1,0 +1,145 @@
+// Based on: the paper's section 3.2 (similarity, clusters).
+// Differs: the same under both rules.
+// Notation: a part is one segment of one building.
+#include "report_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "exporters/html_report/html_report.h"
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostParts = 320;
+
+struct Part {
+  int layer = 0;
+  std::size_t building = 0, segment = 0;
+  const Descriptor* descriptor = nullptr;
+};
+
+/// By layer, there by falling extent.
+std::vector<Part> sorted_parts(const Scene& scene, int layers) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
+    const Building& b = scene.buildings[i];
+    for (std::size_t s = 0; s < std::min(b.descriptors.size(), b.layer_of_segment.size()); ++s)
+      if (b.layer_of_segment[s] >= 0 && b.layer_of_segment[s] < layers)
+        parts.push_back({b.layer_of_segment[s], i, s, &b.descriptors[s]});
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return std::tuple(a.layer, -a.descriptor->extent, a.building, a.segment) <
+           std::tuple(b.layer, -b.descriptor->extent, b.building, b.segment);
+  });
+  return parts;
+}
+
+/// `parts` are those of one layer, by falling extent.
+Json cluster_json(const std::vector<Part>& parts, int layer) {
+  std::vector<std::size_t> buildings;
+  double area = 0;
+  std::size_t flat = 0;
+  for (const Part& p : parts) {
+    buildings.push_back(p.building);
+    area += p.descriptor->area;
+    flat += p.descriptor->is_flat;
+  }
+  std::sort(buildings.begin(), buildings.end());
+  const auto end = std::unique(buildings.begin(), buildings.end());
+  return {{"layer", layer},
+          {"segments", parts.size()},
+          {"buildings", end - buildings.begin()},
+          {"flat", flat},
+          {"extent", parts.empty() ? 0.0 : parts[parts.size() / 2].descriptor->extent},
+          {"area", area}};
+}
+
+Json members_json(const Building& b, int layers) {
+  std::vector<int> count(static_cast<std::size_t>(layers), 0);
+  for (const int layer : b.layer_of_segment)
+    if (layer >= 0 && layer < layers) ++count[layer];
+  return count;
+}
+
+std::vector<Part> pick(const std::vector<Part>& parts) {
+  const std::size_t n = std::min(parts.size(), kMostParts);
+  std::vector<Part> picked;
+  for (std::size_t i = 0; i < n; ++i) picked.push_back(parts[i * parts.size() / n]);
+  return picked;
+}
+
+/// Sums over pairs of layers.
+class Between {
+ public:
+  explicit Between(int layers)
+      : layers_(static_cast<std::size_t>(layers)),
+        sums_(layers_ * layers_),
+        counts_(sums_.size()) {}
+  void add(int a, int b, double similarity) {
+    for (const std::size_t at : {a * layers_ + b, b * layers_ + a})
+      sums_[at] += similarity, counts_[at] += 1;
+  }
+  Json json() const {
+    Json rows = Json::array();
+    for (std::size_t a = 0; a < layers_; ++a) {
+      rows.push_back(Json::array());
+      for (std::size_t at = a * layers_; at < (a + 1) * layers_; ++at)
+        rows.back().push_back(counts_[at] > 0 ? Json(sums_[at] / counts_[at]) : Json());
+    }
+    return rows;
+  }
+
+ private:
+  std::size_t layers_;
+  std::vector<double> sums_, counts_;
+};
+
+void add_similarity(Json& json, const std::vector<Part>& parts, const Options& options) {
+  std::string values;
+  Between between(options.layers);
+  Json layer = Json::array(), building = Json::array(), segment = Json::array(),
+       extent = Json::array();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    layer.push_back(parts[i].layer);
+    building.push_back(parts[i].building);
+    segment.push_back(parts[i].segment);
+    extent.push_back(parts[i].descriptor->extent);
+    for (std::size_t j = i; j < parts.size(); ++j) {
+      const double s = segment_similarity(*parts[i].descriptor, *parts[j].descriptor, options.eta);
+      values += static_cast<char>(std::lround(255 * std::clamp(s, 0.0, 1.0)));
+      if (i != j) between.add(parts[i].layer, parts[j].layer, s);
+    }
+  }
+  json["similarity"] = {{"layer", layer},
+                        {"building", building},
+                        {"segment", segment},
+                        {"extent", extent},
+                        {"values", base64(values)}};
+  json["between"] = between.json();
+}
+
+}  // namespace
+
+std::string parts_json(const Scene& scene, const Options& options) {
+  const std::vector<Part> parts = sorted_parts(scene, options.layers);
+  Json json;
+  json["clusters"] = Json::array();
+  for (int layer = 0; layer < options.layers; ++layer) {
+    std::vector<Part> own;
+    std::copy_if(parts.begin(), parts.end(), std::back_inserter(own),
+                 [layer](const Part& p) { return p.layer == layer; });
+    json["clusters"].push_back(cluster_json(own, layer));
+  }
+  json["members"] = Json::array();
+  for (const Building& b : scene.buildings)
+    json["members"].push_back(members_json(b, options.layers));
+  if (!parts.empty()) add_similarity(json, pick(parts), options);
+  return json.dump();
+}
+
+}  // namespace colod

@@ -1,0 +1,86 @@
+// Inside room `read` only: a glTF file from its bytes to numbers. The scene is gltf.cpp's.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace colod::mesh_io {
+
+/// A file as tinygltf took it apart, without what shapes do not need.
+struct GltfDocument {
+  tinygltf::Model model;
+  std::vector<std::string> warnings;
+};
+
+/// Buffers lie in the file, in `data:` URIs, or in files at or below its folder, which take at most
+/// `input_memory` MiB with it. Throws Error{kInput}, also where the file needs an extension that is
+/// not read.
+GltfDocument open_gltf(const std::string& path, std::string_view bytes, double input_memory);
+
+/// nullptr: there is none of that name.
+const tinygltf::Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* name);
+
+/// A primitive's own points and corners, before its node places them.
+struct GltfPrimitive {
+  std::vector<Vec3> points;
+  std::vector<int> corners;  ///< three a triangle; empty: points or lines only
+};
+
+/// Everything that is checked when a document is read: tinygltf hands out indices, offsets and
+/// counts as they are written. All methods throw Error{kInput}.
+class GltfReader {
+ public:
+  GltfReader(const std::string& path, const tinygltf::Model& model, double input_memory);
+
+  [[noreturn]] void fail(const std::string& cause) const;
+  const tinygltf::Model& model() const { return model_; }
+
+  /// Entry i of a list of the model; `what` is one of them in words.
+  template <typename T>
+  const T& at(const std::vector<T>& list, int i, const char* what) const {
+    if (i < 0 || static_cast<std::size_t>(i) >= list.size())
+      fail(std::string(what) + " " + std::to_string(i) + " of " + std::to_string(list.size()) +
+           " is named but missing");
+    return list[static_cast<std::size_t>(i)];
+  }
+  /// A member that is a whole number, or `none` where it is absent.
+  int integer(const tinygltf::Value& object, const char* key, int none = -1) const;
+  /// A member that lists numbers; empty where it is absent.
+  std::vector<double> numbers(const tinygltf::Value& object, const char* key) const;
+
+  /// count × components numbers, as floats or normalized.
+  std::vector<double> values(int accessor, int components) const;
+  GltfPrimitive primitive(const tinygltf::Primitive& primitive) const;
+
+  /// Counts what is placed. A file may hold few bytes and say that they stand in many places: it
+  /// fails where that comes to more corners than `input_memory` has room for, beyond what its bytes
+  /// could hold.
+  void spend(std::size_t points_and_corners);
+
+ private:
+  struct View {
+    std::string_view stored;
+    std::string unpacked;    ///< instead, where the view was compressed
+    std::size_t stride = 0;  ///< 0: packed
+    std::string_view bytes() const { return unpacked.empty() ? stored : unpacked; }
+  };
+  View view(int index) const;
+  View unpack(int index, const tinygltf::Value& extension) const;
+  std::string_view slice(int buffer, std::size_t offset, std::size_t length,
+                         const std::string& place) const;
+  void replace_sparse(const tinygltf::Accessor& accessor, int components, const std::string& place,
+                      std::vector<double>& values) const;
+  GltfPrimitive draco(const tinygltf::Value& extension) const;
+
+  const std::string& path_;
+  const tinygltf::Model& model_;
+  std::size_t free_corners_, budget_;
+};
+
+}  // namespace colod::mesh_io

@@ -1,0 +1,258 @@
+// Based on: the formats as their writers use them (Wavefront OBJ appendix B1, Geomview OFF).
+// Differs: no library. Debian's tinyobjloader reads `nan` and `v 1 2` as zeros and CGAL's readers
+// name no line; here every number goes through std::from_chars (exact, no locale) and every failure
+// names its line.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "files.h"
+#include "formats.h"
+
+namespace colod::mesh_io {
+
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+/// Does the first line of a text end in CR alone?
+bool ends_in_lone_cr(std::string_view text) {
+  const std::size_t end = text.find_first_of("\r\n");
+  return end != text.npos && text[end] == '\r' && (end + 1 == text.size() || text[end + 1] != '\n');
+}
+
+}  // namespace
+
+bool parse_number(std::string_view token, double& value) {
+  if (!token.empty() && token.front() == '+') token.remove_prefix(1);
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error == std::errc::result_out_of_range)  // 1e-400 is zero, 1e400 no coordinate
+    value = token.find("e-") != token.npos || token.find("E-") != token.npos ? 0.0 : NAN;
+  else if (error != std::errc())
+    return false;
+  if (end == token.data() + token.size()) return true;
+  value = NAN;
+  return *end == '#';  // what Microsoft's printf makes of NaN
+}
+
+void fail(const std::string& path, const std::string& cause) {
+  throw Error(Stage::kInput, path, cause);
+}
+
+std::string head_remarks(std::string_view text) {
+  constexpr std::size_t kHead = 2000;
+  std::string remarks;
+  text = text.substr(0, kHead);
+  for (std::size_t at = text.find('#'); at != text.npos; at = text.find('#', at)) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    remarks += std::string(text.substr(at, end - at)) + "\n";
+    at = end;
+  }
+  return remarks;
+}
+
+Lines::Lines(std::string path, std::string_view text, int lines_before)
+    : path_(std::move(path)),
+      text_(text),
+      line_number_(lines_before),
+      has_lone_cr_(ends_in_lone_cr(text)) {}
+
+void Lines::fail(const std::string& cause) const {
+  mesh_io::fail(path_, "line " + std::to_string(line_number_) + ": " + cause);
+}
+
+bool Lines::take_line() {
+  if (text_.empty()) return false;
+  const std::size_t end = std::min(text_.find_first_of("\r\n"), text_.size());
+  line_ = text_.substr(0, end);
+  const bool is_pair = !has_lone_cr_ && text_.substr(end).starts_with("\r\n");
+  text_.remove_prefix(std::min(end + (is_pair ? 2 : 1), text_.size()));
+  while (!line_.empty() && is_blank(line_.back())) line_.remove_suffix(1);
+  ++line_number_;
+  return true;
+}
+
+bool Lines::next() {
+  while (take_line())
+    if (has_token()) return true;
+  return false;
+}
+
+bool Lines::has_token() {
+  for (;;) {
+    while (!line_.empty() && is_blank(line_.front())) line_.remove_prefix(1);
+    if (line_.starts_with('#')) line_ = {};
+    if (!has_continuation_ || line_ != "\\") return !line_.empty();
+    line_ = {};
+    if (!take_line()) return false;
+  }
+}
+
+std::string_view Lines::token() {
+  has_token();
+  std::size_t n = 0;
+  while (n < line_.size() && !is_blank(line_[n])) ++n;
+  std::string_view result = line_.substr(0, n);
+  line_.remove_prefix(n);
+  if (has_continuation_ && line_.empty() && result.ends_with('\\')) {
+    line_ = result.substr(result.size() - 1);  // what is left says that the next line belongs here
+    result.remove_suffix(1);
+  }
+  return result;
+}
+
+void Lines::move_on() {
+  if (!has_token() && !next()) fail("truncated: a number is missing");
+}
+
+double Lines::number_across() {
+  move_on();
+  return number();
+}
+
+int Lines::integer_across() {
+  move_on();
+  return integer();
+}
+
+double Lines::number() {
+  const std::string_view t = token();
+  if (t.empty()) fail("a number is missing");
+  double value = 0;
+  if (!parse_number(t, value)) fail("'" + std::string(t.substr(0, 40)) + "' is not a number");
+  return value;
+}
+
+int Lines::integer() {
+  const std::string_view t = token();
+  if (t.empty()) fail("a number is missing");
+  int value = 0;
+  const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
+  if (error != std::errc() || end != t.data() + t.size())
+    fail("'" + std::string(t.substr(0, 40)) + "' is not a whole number that fits");
+  return value;
+}
+
+namespace {
+
+Vec3 read_vec3(Lines& lines) {
+  const double x = lines.number(), y = lines.number(), z = lines.number();
+  return {x, y, z};
+}
+
+/// One that may be broken over several lines.
+Vec3 read_vec3_across(Lines& lines) {
+  const double x = lines.number_across(), y = lines.number_across(), z = lines.number_across();
+  return {x, y, z};
+}
+
+std::string trimmed(std::string_view s) {
+  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  return std::string(s);
+}
+
+/// Names get numbers in the order in which they come.
+struct Numbering {
+  std::map<std::string, int> number_of;
+  std::vector<std::string> names;
+
+  int number(const std::string& name) {
+    const auto [it, is_new] = number_of.emplace(name, static_cast<int>(names.size()));
+    if (is_new) names.push_back(name);
+    return it->second;
+  }
+};
+
+/// One corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative counts back from the last vertex.
+int obj_corner(Lines& lines, std::string_view token, int points) {
+  token = token.substr(0, token.find('/'));
+  int i = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), i);
+  if (error != std::errc() || end != token.data() + token.size() || i == 0)
+    lines.fail("'" + std::string(token.substr(0, 40)) + "' is not a vertex index");
+  if (i < -points) lines.fail("a face counts back beyond the first vertex");
+  return i < 0 ? points + i : i - 1;
+}
+
+}  // namespace
+
+RawFile read_obj(const std::string& path, const std::string& bytes) {
+  RawFile raw;
+  raw.remarks = head_remarks(bytes);
+  Numbering groups, objects;
+  int group = -1, object = -1, short_faces = 0, first_short = 0;
+  Lines lines(path, bytes);
+  lines.allow_continuation();
+  while (lines.next()) {
+    const std::string key = lower(std::string(lines.token()));
+    if (key == "v") {
+      raw.points.push_back(read_vec3(lines));
+    } else if (key == "f") {
+      const int begin = static_cast<int>(raw.corners.size());
+      while (lines.has_token())
+        raw.corners.push_back(
+            obj_corner(lines, lines.token(), static_cast<int>(raw.points.size())));
+      if (raw.corners.size() - begin < 3) {
+        raw.corners.resize(begin);
+        if (++short_faces == 1) first_short = lines.line_number();
+        continue;
+      }
+      raw.face_begin.push_back(begin);
+      raw.face_group.push_back(group);
+      raw.face_part.push_back(object);
+    } else if (key == "g") {
+      group = groups.number(trimmed(lines.rest()));
+    } else if (key == "o") {
+      object = objects.number(trimmed(lines.rest()));
+    }
+  }
+  if (groups.names.empty()) raw.face_group.clear();
+  if (objects.names.empty()) raw.face_part.clear();
+  raw.parts = objects.names;
+  raw.groups = groups.names;
+  if (short_faces > 0)
+    raw.warnings.push_back(std::to_string(short_faces) +
+                           " faces with fewer than 3 corners left out, first in line " +
+                           std::to_string(first_short));
+  return raw;
+}
+
+RawFile read_off(const std::string& path, const std::string& bytes) {
+  Lines lines(path, bytes);
+  if (!lines.next()) fail(path, "the file is empty");
+  std::string key(lines.token());
+  if (key == "off" || key == "coff") key = "OFF";
+  if (!key.ends_with("OFF")) lines.fail("this is no OFF header");
+  const bool has_normals = key.find('N') != key.npos;
+  if (key.find('4') != key.npos || key.find('n') != key.npos)
+    lines.fail("only three-dimensional OFF is read");
+  if (lines.has_token() && lines.rest().substr(0, 6) == "BINARY")
+    lines.fail("binary OFF is not read");
+  if (!lines.has_token() && !lines.next()) lines.fail("truncated: the counts are missing");
+  const int points = lines.integer_across();
+  const bool is_broken = !lines.has_token();  // then the count of edges has a line of its own, too
+  const int faces = lines.integer_across();
+  if (is_broken) lines.integer_across();
+  if (points < 0 || faces < 0) lines.fail("a count is negative");
+  RawFile raw;
+  for (int i = 0; i < points; ++i) {
+    if (!lines.next())
+      lines.fail("truncated: " + std::to_string(i) + " of " + std::to_string(points) + " vertices");
+    raw.points.push_back(read_vec3_across(lines));
+    if (has_normals) raw.normals.push_back(read_vec3_across(lines));
+  }
+  for (int f = 0; f < faces; ++f) {
+    if (!lines.next())
+      lines.fail("truncated: " + std::to_string(f) + " of " + std::to_string(faces) + " faces");
+    const int corners = lines.integer();
+    if (corners < 0) lines.fail("a face with a negative number of corners");
+    if (corners < 3) continue;
+    raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
+    for (int c = 0; c < corners; ++c) raw.corners.push_back(lines.integer_across());
+  }
+  return raw;
+}
+
+}  // namespace colod::mesh_io

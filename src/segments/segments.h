@@ -1,0 +1,52 @@
+// Planes → Segments: sets of planes around one component of the building (paper
+// section 3.1, Algorithm 1).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "planes/planes.h"
+#include "visibility/visibility.h"
+
+namespace colod {
+
+struct SegmentOptions {
+  bool is_paper = false;    ///< Algorithm 1, hSum rule and plane → most hits, to the letter
+  double alcove_area = 80;  ///< A_eps, m²
+  VisibilityOptions visibility;
+};
+
+/// What planes enclose only in part or rays do not part from the body is a kind of its own
+/// (elements/elements.h), and so is what makes the building much taller: a spire. A scene file
+/// holds the number.
+enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire, kRecess };
+
+struct Segment {
+  std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one
+  bool is_alcove = false;   ///< a recess: its voxels lie outside the building
+  Form form = Form::kPlain;
+  std::int64_t voxels = 0;
+  double volume = 0;  ///< m³, voxels × voxel volume
+  double area = 0;    ///< m² of its planes
+};
+
+/// Voxels enclosed by exactly this set of segments.
+struct Coverage {
+  std::vector<int> segments;  ///< rising, not empty
+  double share = 0;           ///< of all enclosed voxels; the shares of a building sum to 1
+};
+
+struct Segments {
+  std::vector<Segment> segments;      ///< largest volume first, ties by first plane
+  std::vector<int> segment_of_plane;  ///< −1: none
+  std::vector<Coverage> coverage;     ///< P(I) of the paper's eq. 3, taken apart by who encloses
+  std::uint64_t rays = 0;
+  double visibility_seconds = 0, aggregation_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Never empty: when nothing is enclosed, all planes become one segment, with a warning.
+Segments build_segments(const Planes& planes, const SegmentOptions& options = {});
+
+}  // namespace colod

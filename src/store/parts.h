@@ -1,0 +1,135 @@
+// Inside the store: SQLite's statements, and the rows of one building.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "store.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace colod {
+
+/// Records of doubles and nothing else.
+template <typename T>
+constexpr bool is_doubles = std::is_same_v<T, Vec3> || std::is_same_v<T, std::array<double, 64>> ||
+                            std::is_same_v<T, VisibleStep>;
+
+/// One prepared statement of SQLite: bind in order, step, read columns in order.
+class Statement {
+ public:
+  Statement(sqlite3* db, const std::string& path, Stage stage, const char* sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& bind(const std::string& v);
+  Statement& bind(double v);
+  Statement& bind(std::int64_t v);
+  Statement& bind(int v) { return bind(static_cast<std::int64_t>(v)); }
+  Statement& bind_bytes(const void* data, std::size_t size);
+  template <typename T>
+  Statement& bind(const std::vector<T>& v) {
+    static_assert(sizeof(T) % 4 == 0);
+    return bind_bytes(v.data(), v.size() * sizeof(T));
+  }
+  Statement& bind(const Vec3& v) { return bind_bytes(v.data(), sizeof(Vec3)); }
+  Statement& bind_null();
+
+  /// True when there is a row to read.
+  bool step();
+  /// Steps once and is ready to be bound again.
+  void run();
+
+  bool is_null() const;  ///< the next column
+  std::string text();
+  double real();
+  std::int64_t integer();
+  template <typename T>
+  std::vector<T> array() {
+    const std::span<const std::byte> bytes = blob();
+    if (bytes.size() % sizeof(T) != 0)
+      throw Error(Stage::kInput, path_, "damaged: an array has a wrong length");
+    std::vector<T> v(bytes.size() / sizeof(T));
+    if (!bytes.empty()) std::memcpy(static_cast<void*>(v.data()), bytes.data(), bytes.size());
+    if constexpr (is_doubles<T>)
+      check_numbers({reinterpret_cast<const double*>(v.data()), v.size() * sizeof(T) / 8});
+    return v;
+  }
+  template <typename T>
+  T value() {
+    const std::vector<T> v = array<T>();
+    if (v.size() != 1) throw Error(Stage::kInput, path_, "damaged: a record has a wrong length");
+    return v.front();
+  }
+
+ private:
+  std::span<const std::byte> blob();  ///< until the next step
+  void check(int code) const;
+  /// What follows takes finite numbers, no farther than a reader of meshes lets them be, for
+  /// granted. Throws Error{kInput}.
+  void check_numbers(std::span<const double> numbers) const;
+
+  sqlite3* db_;
+  const std::string& path_;
+  Stage stage_;
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0, read_ = 0;
+};
+
+/// Reads JSON that `parse` takes apart; what it does not hold, or holds in another type, is damage.
+template <typename Parse>
+void read_json(const std::string& text, const std::string& path, const char* what,
+               const Parse& parse) {
+  try {
+    parse(nlohmann::json::parse(text));
+  } catch (const nlohmann::json::exception&) {
+    throw Error(Stage::kInput, path, std::string("damaged: its ") + what + " are unreadable");
+  }
+}
+
+struct Store::Impl {
+  std::string path;
+  sqlite3* db = nullptr;
+
+  ~Impl();
+
+  Statement read(const char* sql) const { return {db, path, Stage::kInput, sql}; }
+  Statement write(const char* sql) const { return {db, path, Stage::kOutput, sql}; }
+  void execute(const char* sql, Stage stage) const;
+  /// All of `body` or nothing.
+  void transaction(const std::function<void()>& body) const;
+  bool has_row(const char* sql, const std::string& name) const;
+  /// All tables, views and triggers as they were made.
+  std::vector<std::string> schema() const;
+  /// Throws Error{kInput} where they are not a scene file's own.
+  void check_schema() const;
+
+  // rows.cpp
+  void put_building(const Building& b, int order, const std::string& key) const;
+  void put_planes(const Building& b) const;
+  void put_segments(const Building& b) const;
+  void put_layer(const Building& b, const Layer& layer) const;
+  void put_outcome(const Building& b) const;  ///< what its meshing changed of the building itself
+  void get_building(Building& b) const;
+  void get_planes(Building& b) const;
+  void get_segments(Building& b) const;
+  void get_layers(Building& b) const;
+};
+
+/// The columns is_like_finer, deviation, profile.
+LayerSight read_sight(Statement& s);
+
+/// The columns form, volume, area, extent, is_flat, eigenvalues, d2.
+Descriptor read_descriptor(Statement& s);
+
+}  // namespace colod

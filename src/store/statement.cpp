@@ -1,0 +1,92 @@
+// Based on: SQLite's C interface.
+// Differs: –
+// Notation: –
+
+#include <sqlite3.h>
+
+#include <cmath>
+
+#include "parts.h"
+
+namespace colod {
+
+Statement::Statement(sqlite3* db, const std::string& path, Stage stage, const char* sql)
+    : db_(db), path_(path), stage_(stage) {
+  check(sqlite3_prepare_v2(db, sql, -1, &statement_, nullptr));
+}
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+Statement& Statement::bind(const std::string& v) {
+  check(
+      sqlite3_bind_text64(statement_, ++bound_, v.data(), v.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::bind(double v) {
+  check(sqlite3_bind_double(statement_, ++bound_, v));
+  return *this;
+}
+
+Statement& Statement::bind(std::int64_t v) {
+  check(sqlite3_bind_int64(statement_, ++bound_, v));
+  return *this;
+}
+
+Statement& Statement::bind_bytes(const void* data, std::size_t size) {
+  check(sqlite3_bind_blob64(statement_, ++bound_, size ? data : "", size, SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind_null() {
+  check(sqlite3_bind_null(statement_, ++bound_));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_);
+  read_ = 0;
+  if (code != SQLITE_ROW && code != SQLITE_DONE) check(code);
+  return code == SQLITE_ROW;
+}
+
+void Statement::run() {
+  step();
+  sqlite3_reset(statement_);
+  bound_ = 0;
+}
+
+bool Statement::is_null() const { return sqlite3_column_type(statement_, read_) == SQLITE_NULL; }
+
+std::string Statement::text() {
+  const auto* data = reinterpret_cast<const char*>(sqlite3_column_text(statement_, read_));
+  const int size = sqlite3_column_bytes(statement_, read_++);
+  return data ? std::string(data, static_cast<std::size_t>(size)) : std::string();
+}
+
+double Statement::real() {
+  const double value = sqlite3_column_double(statement_, read_++);
+  check_numbers({&value, 1});
+  return value;
+}
+
+std::int64_t Statement::integer() { return sqlite3_column_int64(statement_, read_++); }
+
+std::span<const std::byte> Statement::blob() {
+  const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(statement_, read_));
+  return {data, static_cast<std::size_t>(sqlite3_column_bytes(statement_, read_++))};
+}
+
+void Statement::check_numbers(std::span<const double> numbers) const {
+  constexpr double kMost = 1e25;  // square metres of a place 1e12 m wide
+  for (const double x : numbers)
+    if (!(std::abs(x) <= kMost))
+      throw Error(Stage::kInput, path_, "damaged: a number is not finite, or out of all bounds");
+}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK)
+    throw Error(stage_, path_, std::string("scene file: ") + sqlite3_errmsg(db_));
+}
+
+}  // namespace colod

@@ -1,0 +1,363 @@
+// Based on: SQLite's own advice for application file formats (one file, transactions, blobs for
+// bulk data).
+//
+// Scalars that a person may ask for are columns; arrays are blobs of little-endian numbers
+// (docs/scene-file.md). Files written on a big-endian machine are not readable elsewhere, which is
+// checked by the user_version.
+
+#include "store.h"
+
+#include <sqlite3.h>
+
+#include "parts.h"
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kFormat = 7;  // PRAGMA user_version
+
+constexpr const char* kSchema = R"sql(
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT NOT NULL, path TEXT NOT NULL,
+  origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
+  box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
+  rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL,
+  given_name TEXT NOT NULL, solid REAL);
+CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
+  segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
+  centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
+  PRIMARY KEY(building, id)) WITHOUT ROWID;
+CREATE TABLE segment(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
+  layer INTEGER, is_alcove INTEGER, form INTEGER, voxels INTEGER, volume REAL, area REAL, extent REAL, is_flat INTEGER,
+  eigenvalues BLOB, d2 BLOB, PRIMARY KEY(building, id)) WITHOUT ROWID;
+CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
+  segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
+CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
+  segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
+  facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
+)sql";
+
+Json options_json(const Options& o) {
+  Json json{{"rules", o.rules == Rules::kPaper ? "paper" : "robust"},
+            {"visibility", name_of(o.visibility)},
+            {"layering", o.is_size_layering ? "size" : "spectral"}};
+  for (const OptionInfo& info : option_table()) json[info.name] = info.get(o);
+  return json;
+}
+
+/// FNV-1a, 64 bits, of any bytes; two lanes make accidental equality as unlikely as needed for "did
+/// the input change".
+class Hash {
+ public:
+  void add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) {
+      a_ = (a_ ^ bytes[i]) * 1099511628211ULL;
+      b_ = (b_ ^ bytes[i]) * 6364136223846793005ULL + 1442695040888963407ULL;
+    }
+  }
+  template <typename T>
+  void add(const std::vector<T>& v) {
+    const std::size_t size = v.size();
+    add(&size, sizeof size);
+    add(v.data(), v.size() * sizeof(T));
+  }
+  std::string hex() const {
+    char text[33];
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(a_),
+                  static_cast<unsigned long long>(b_));
+    return text;
+  }
+
+ private:
+  std::uint64_t a_ = 14695981039346656037ULL, b_ = 88172645463325252ULL;
+};
+
+}  // namespace
+
+Store::Impl::~Impl() { sqlite3_close(db); }
+
+void Store::Impl::execute(const char* sql, Stage stage) const {
+  if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
+    throw Error(stage, path, std::string("scene file: ") + sqlite3_errmsg(db));
+}
+
+void Store::Impl::transaction(const std::function<void()>& body) const {
+  execute("BEGIN IMMEDIATE", Stage::kOutput);
+  try {
+    body();
+    execute("COMMIT", Stage::kOutput);
+  } catch (...) {
+    sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
+bool Store::Impl::has_row(const char* sql, const std::string& name) const {
+  Statement s = read(sql);
+  return s.bind(name).step();
+}
+
+std::vector<std::string> Store::Impl::schema() const {
+  std::vector<std::string> made;
+  Statement s = read("SELECT name, sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY name");
+  while (s.step()) {
+    made.push_back(s.text());
+    made.back() += ' ' + s.text();
+  }
+  return made;
+}
+
+/// A file may say anything of what its tables are, and a view or trigger runs when one is read.
+void Store::Impl::check_schema() const {
+  Impl own;
+  if (sqlite3_open(":memory:", &own.db) != SQLITE_OK)
+    throw Error(Stage::kProcess, path, "no memory for its schema");
+  own.execute(kSchema, Stage::kProcess);
+  if (schema() != own.schema())
+    throw Error(
+        Stage::kInput, path,
+        "damaged: its tables are not those of a scene file of format " + std::to_string(kFormat));
+}
+
+Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
+  impl_->path = path;
+  const int flags = SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0);
+  if (sqlite3_open_v2(path.c_str(), &impl_->db, flags, nullptr) != SQLITE_OK)
+    throw Error(is_new_allowed ? Stage::kOutput : Stage::kInput, path,
+                std::string("cannot open the scene file: ") + sqlite3_errmsg(impl_->db));
+  impl_->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", Stage::kInput);
+  Statement version = impl_->read("PRAGMA user_version");
+  version.step();
+  const std::int64_t found = version.integer();
+  if (found == kFormat) {
+    impl_->check_schema();
+    return;
+  }
+  if (found != 0)
+    throw Error(Stage::kInput, path,
+                "is a scene file of format " + std::to_string(found) +
+                    ", this colod reads and writes " + std::to_string(kFormat) +
+                    ": run colod segment again into a new file");
+  if (impl_->has_row("SELECT 1 FROM sqlite_master WHERE name <> ?1", ""))
+    throw Error(Stage::kInput, path, "is a database, but not a scene file of colod");
+  impl_->transaction([&] {
+    impl_->execute(kSchema, Stage::kOutput);
+    impl_->execute(("PRAGMA user_version = " + std::to_string(kFormat)).c_str(), Stage::kOutput);
+  });
+}
+
+Store::~Store() = default;
+Store::Store(Store&&) noexcept = default;
+
+void Store::put_options(const Options& options) {
+  const std::string text = options_json(options).dump();
+  Statement old = impl_->read("SELECT value FROM meta WHERE key = 'options'");
+  const bool is_there = old.step();
+  if (is_there && old.text() == text) return;
+  impl_->transaction([&] {
+    if (is_there && this->options().layers != options.layers)
+      impl_->execute("DELETE FROM layer; UPDATE segment SET layer = NULL", Stage::kOutput);
+    impl_->execute("DELETE FROM meta WHERE key = 'coanalysis'", Stage::kOutput);
+    impl_->write("INSERT OR REPLACE INTO meta VALUES('options', ?1)").bind(text).run();
+  });
+}
+
+Options Store::options() const {
+  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'options'");
+  if (!s.step())
+    throw Error(Stage::kInput, impl_->path, "holds no options: colod segment has not finished");
+  Options options;
+  read_json(s.text(), impl_->path, "options", [&](const Json& json) {
+    options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
+    options.visibility = visibility_of(json.value("visibility", "embree"));
+    options.is_size_layering = json.value("layering", "spectral") == "size";
+    for (const OptionInfo& info : option_table()) {
+      const double value = json.value(info.name, info.get(options));
+      if (!(value >= info.min && value <= info.max))
+        throw Error(Stage::kInput, impl_->path, "damaged: its option " + info.name + " is wild");
+      info.set(options, value);
+    }
+  });
+  return options;
+}
+
+std::vector<std::string> Store::names() const {
+  std::vector<std::string> result;
+  Statement s = impl_->read("SELECT name FROM building ORDER BY position, name");
+  while (s.step()) result.push_back(s.text());
+  return result;
+}
+
+void Store::put_segments(const Building& b, int order, const std::string& key) {
+  impl_->transaction([&] {
+    impl_->write("DELETE FROM building WHERE name = ?1").bind(b.source.name).run();
+    impl_->put_building(b, order, key);
+    impl_->put_planes(b);
+    impl_->put_segments(b);
+  });
+}
+
+std::string Store::segments_key(const std::string& name) const {
+  Statement s = impl_->read("SELECT key FROM building WHERE name = ?1");
+  return s.bind(name).step() ? s.text() : std::string();
+}
+
+void Store::put_layers_of_segments(const Building& b) {
+  impl_->transaction([&] {
+    bool is_changed = false;
+    Statement old = impl_->read("SELECT id, layer FROM segment WHERE building = ?1 ORDER BY id");
+    old.bind(b.source.name);
+    while (old.step()) {
+      const auto id = static_cast<std::size_t>(old.integer());
+      is_changed = is_changed || old.is_null() || id >= b.layer_of_segment.size() ||
+                   old.integer() != b.layer_of_segment[id];
+    }
+    if (!is_changed) return;
+    impl_->write("DELETE FROM layer WHERE building = ?1").bind(b.source.name).run();
+    Statement s = impl_->write("UPDATE segment SET layer = ?1 WHERE building = ?2 AND id = ?3");
+    for (std::size_t i = 0; i < b.layer_of_segment.size(); ++i)
+      s.bind(b.layer_of_segment[i]).bind(b.source.name).bind(static_cast<int>(i)).run();
+  });
+}
+
+bool Store::has_layers_of_segments(const std::string& name) const {
+  return !impl_->has_row("SELECT 1 FROM segment WHERE building = ?1 AND layer IS NULL", name);
+}
+
+void Store::put_meshes(const Building& b) {
+  impl_->transaction([&] {
+    impl_->write("DELETE FROM layer WHERE building = ?1").bind(b.source.name).run();
+    for (const Layer& layer : b.layers) impl_->put_layer(b, layer);
+    impl_->put_outcome(b);
+  });
+}
+
+bool Store::has_meshes(const std::string& name) const {
+  return impl_->has_row("SELECT 1 FROM layer WHERE building = ?1", name);
+}
+
+Building Store::building(const std::string& name) const {
+  Building b;
+  b.source.name = name;
+  impl_->get_building(b);
+  impl_->get_planes(b);
+  impl_->get_segments(b);
+  impl_->get_layers(b);
+  b.counts = count(b);
+  return b;
+}
+
+std::vector<BuildingSights> Store::sights() const {
+  std::vector<BuildingSights> result;
+  Statement s = impl_->read(
+      "SELECT building, layer, is_like_finer, deviation, profile FROM layer WHERE failure = '' "
+      "ORDER BY building, layer");
+  std::string last;
+  while (s.step()) {
+    const std::string name = s.text();
+    if (result.empty() || name != last) result.emplace_back();
+    last = name;
+    result.back().layers.push_back(static_cast<int>(s.integer()));
+    result.back().sights.push_back(read_sight(s));
+  }
+  return result;
+}
+
+Prior Store::prior() const {
+  Prior prior;
+  prior.layers = options().layers;
+  Statement s = impl_->read(
+      "SELECT b.name, s.layer, s.form, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, s.d2"
+      " FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, b.name, s.id");
+  std::string last;
+  while (s.step()) {
+    const std::string name = s.text();
+    if (prior.buildings.empty() || name != last) prior.buildings.emplace_back();
+    last = name;
+    if (s.is_null())
+      throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
+    const auto layer = static_cast<int>(s.integer());
+    const Descriptor d = read_descriptor(s);
+    if (layer < 0 || layer >= prior.layers)
+      throw Error(Stage::kInput, impl_->path, "damaged: a segment lies on no layer");
+    prior.buildings.back().segments.push_back(d);
+    prior.buildings.back().layer.push_back(layer);
+  }
+  if (prior.buildings.empty())
+    throw Error(Stage::kInput, impl_->path, "holds no segment to learn from");
+  return prior;
+}
+
+void Store::put_coanalysis(const Scene& scene) {
+  std::vector<std::string> warnings = scene.selection.warnings;
+  warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
+                  scene.clustering.warnings.end());
+  const Json json{{"objective", scene.selection.objective},
+                  {"bound", scene.selection.bound},
+                  {"gap", scene.selection.gap},
+                  {"status", static_cast<int>(scene.selection.status)},
+                  {"seconds", scene.coanalysis_seconds},
+                  {"prior", scene.has_prior},
+                  {"warnings", warnings}};
+  impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
+}
+
+void Store::get_coanalysis(Scene& scene) const {
+  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'coanalysis'");
+  if (!s.step())
+    throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
+  read_json(s.text(), impl_->path, "figures of the analysis", [&](const Json& json) {
+    scene.selection.objective = json.value("objective", 0.0);
+    scene.selection.bound = json.value("bound", 0.0);
+    scene.selection.gap = json.value("gap", 0.0);
+    scene.selection.status = static_cast<SelectionStatus>(json.value("status", 0));
+    scene.coanalysis_seconds = json.value("seconds", 0.0);
+    scene.has_prior = json.value("prior", false);
+    scene.selection.warnings = json.value("warnings", std::vector<std::string>{});
+  });
+}
+
+// An empty name is SQLite's for a database on disk that nobody else sees.
+TemporaryStore::TemporaryStore() : store_("", true) {}
+
+void TemporaryStore::put(Building& b) {
+  {
+    const std::lock_guard lock(mutex_);
+    store_.put_segments(b, 0, "");
+  }
+  drop(b);
+}
+
+void TemporaryStore::get(Building& b) {
+  const std::lock_guard lock(mutex_);
+  Building kept = store_.building(b.source.name);
+  b.source.mesh = std::move(kept.source.mesh);
+  b.source.cloud = std::move(kept.source.cloud);
+  b.planes = std::move(kept.planes);
+}
+
+void TemporaryStore::drop(Building& b) { drop_geometry(b); }
+
+std::string segments_key(const Source& source, const Options& options) {
+  Hash hash;
+  hash.add(source.mesh.vertices);
+  hash.add(source.mesh.faces);
+  hash.add(source.cloud.points);
+  hash.add(source.cloud.normals);
+  Options relevant = options;  // what only later rooms read does not outdate segments
+  const Options defaults;
+  relevant.layers = defaults.layers;
+  relevant.beta = defaults.beta;
+  relevant.lambda = defaults.lambda;
+  relevant.eta = defaults.eta;
+  relevant.gap = defaults.gap;
+  relevant.is_size_layering = defaults.is_size_layering;
+  const std::string text = options_json(relevant).dump();
+  hash.add(text.data(), text.size());
+  return hash.hex();
+}
+
+}  // namespace colod

@@ -1,0 +1,85 @@
+// The scene file: one SQLite database with inputs, planes, segments, layers and meshes
+// (docs/scene-file.md).
+//
+// Stages write one building per transaction, so a killed run leaves whole buildings only and goes
+// on with the missing ones.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "pipeline/pipeline.h"
+
+namespace colod {
+
+/// Not thread-safe. Every function throws Error{kInput} (reading) or Error{kOutput} (writing)
+/// naming the file.
+class Store {
+ public:
+  /// Opens a scene file; `is_new_allowed` makes it when there is none.
+  Store(const std::string& path, bool is_new_allowed);
+  ~Store();
+  Store(Store&&) noexcept;
+
+  /// Other options outdate the analysis, another number of layers the meshes too: they go away.
+  void put_options(const Options& options);
+  Options options() const;
+
+  /// Names of all buildings, in the order of the input.
+  std::vector<std::string> names() const;
+
+  /// `read` to `coanalysis`: replaces the building of this name and all that hung on it. `order`
+  /// sorts names(); `key` says what it was made from.
+  void put_segments(const Building& building, int order, const std::string& key);
+  /// The key that the building was put with; empty: not there.
+  std::string segments_key(const std::string& name) const;
+
+  /// `coanalysis` and `coanalysis`: layer_of_segment of a building; its meshes, which they outdate,
+  /// go away when a layer changed.
+  void put_layers_of_segments(const Building& building);
+  bool has_layers_of_segments(const std::string& name) const;
+
+  /// `partition` and `extraction`: the meshes with their measures.
+  void put_meshes(const Building& building);
+  bool has_meshes(const std::string& name) const;
+
+  /// All that is there of a building; timings are not kept.
+  Building building(const std::string& name) const;
+
+  /// What the buildings with meshes bring to the decision when layers switch.
+  std::vector<BuildingSights> sights() const;
+
+  /// What the analysed scene learnt. Throws Error{kInput} when it is not analysed.
+  Prior prior() const;
+
+  /// What the co-analysis reported, for the report.
+  void put_coanalysis(const Scene& scene);
+  void get_coanalysis(Scene& scene) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Sources and planes in a temporary database that the system's folder for such files holds and
+/// that goes away by itself. Throws Error{kOutput} where there is no room.
+class TemporaryStore : public Depot {
+ public:
+  TemporaryStore();
+  void put(Building& building) override;
+  void get(Building& building) override;
+  void drop(Building& building) override;
+
+ private:
+  std::mutex mutex_;
+  Store store_;
+};
+
+/// A key for Store::put_segments: a hash of the source's content and of the options that rooms 2 to
+/// 5 depend on.
+std::string segments_key(const Source& source, const Options& options);
+
+}  // namespace colod

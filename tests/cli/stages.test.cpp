@@ -1,0 +1,232 @@
+// Stages that are killed and started again, and scenes that have next to nothing in them.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "meshes.h"
+#include "read/read.h"
+#include "store/store.h"
+#include "temporary_folder.h"
+
+using namespace colod;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Folder : test::TemporaryFolder {
+  std::string operator/(const std::string& name) const { return (path() / name).string(); }
+};
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+int count_of(const std::string& text, const std::string& word) {
+  int n = 0;
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++n;
+  return n;
+}
+
+/// Runs colod, its messages to `log`; kills it (-9) after that many milliseconds unless 0. Whether
+/// it ended by itself, and well.
+bool run(std::vector<std::string> arguments, const std::string& log, int kill_after_ms = 0) {
+  arguments.insert(arguments.begin(), COLOD_BINARY);
+  std::vector<char*> argv;
+  for (std::string& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!freopen(log.c_str(), "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(9);
+    execv(argv[0], argv.data());
+    _exit(9);
+  }
+  int status = 0;
+  if (kill_after_ms > 0) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kill_after_ms);
+    while (std::chrono::steady_clock::now() < end) {
+      if (waitpid(child, &status, WNOHANG) == child)
+        return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    kill(child, SIGKILL);
+  }
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+void write_off(const fs::path& path, const Mesh& m) {
+  std::ofstream out(path);
+  out << "OFF\n" << m.vertices.size() << " " << m.faces.size() << " 0\n";
+  for (const Vec3& v : m.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const Face& f : m.faces) out << "3 " << f[0] << " " << f[1] << " " << f[2] << "\n";
+}
+
+Mesh house(int i) {
+  return test::join(test::gable_house(9 + 0.5 * i, 8, 6, 3 + 0.1 * i),
+                    test::box_mesh({2, 3, 7}, {3, 4.2, 11}));
+}
+
+/// Two kinds of part, so that the layers beyond the first have something to tell apart.
+Mesh house_with_porch(int i) {
+  return test::join(house(i), test::box_mesh({3, -3, 0}, {7, 0.2, 3}));
+}
+
+int segmented(const std::string& scene) {
+  if (!fs::exists(scene)) return 0;
+  try {
+    return static_cast<int>(Store(scene, true).names().size());
+  } catch (const std::exception&) {
+    return -1;
+  }
+}
+
+int meshed(const std::string& scene) {
+  Store store(scene, false);
+  int n = 0;
+  for (const std::string& name : store.names()) n += store.has_meshes(name);
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("kill -9 at any point of segment and mesh: the rest is done, the bytes are the same") {
+  Folder f;
+  fs::create_directories(f / "in");
+  for (int i = 0; i < 20; ++i)
+    write_off(f.path() / "in" / ("h" + std::to_string(10 + i) + ".off"), house(i));
+  const std::string scene = f / "s.colod", log = f / "log";
+  const std::vector<std::string> small{"--ns", "10", "--nr", "12", "--threads", "2"};
+  std::vector<std::string> segment{"segment", f / "in", "-o", scene, "--log-json"};
+  segment.insert(segment.end(), small.begin(), small.end());
+
+  int kills = 0;
+  for (int ms = 15;; ms += ms / 3) {
+    const int before = segmented(scene);
+    REQUIRE(before >= 0);
+    const bool is_done = run(segment, log, ms);
+    const std::string messages = slurp(log);
+    CHECK(count_of(messages, "already there") <= before);  // fewer only where it was killed early
+    if (is_done) {
+      CHECK(count_of(messages, "already there") == before);
+      break;
+    }
+    ++kills;
+    REQUIRE(ms < 600000);
+  }
+  CHECK(segmented(scene) == 20);
+  REQUIRE(run({"analyze", scene}, log));
+  for (int ms = 15;; ms += ms / 3) {
+    const int before = meshed(scene);
+    if (run({"mesh", scene, "--threads", "2", "--log-json"}, log, ms)) {
+      CHECK(count_of(slurp(log), "\"layers\"") == 20 - before);
+      break;
+    }
+    ++kills;
+    REQUIRE(ms < 600000);
+  }
+  CHECK(kills >= 2);
+  REQUIRE(run({"export", scene, "-o", f / "stages", "--quiet"}, log));
+  std::vector<std::string> build{"build", f / "in", "-o", f / "whole", "--quiet"};
+  build.insert(build.end(), small.begin(), small.end());
+  REQUIRE(run(build, log));
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(f.path() / "whole"))
+    if (entry.is_regular_file() && entry.path().stem() != "report") {
+      const fs::path name = fs::relative(entry.path(), f.path() / "whole");
+      INFO(name.string());
+      CHECK(slurp(entry.path()) == slurp(f.path() / "stages" / name));
+      ++files;
+    }
+  CHECK(files > 20);
+}
+
+TEST_CASE("a prior gives a single building the layers of a city, in build and in stages") {
+  Folder f;
+  fs::create_directories(f / "city");
+  for (int i = 0; i < 4; ++i)
+    write_off(f.path() / "city" / ("h" + std::to_string(i) + ".off"), house_with_porch(i));
+  fs::create_directories(f / "alone");
+  write_off(f.path() / "alone" / "h2.off", house_with_porch(2));
+  const std::string log = f / "log", city = f / "city.colod", one = f / "one.colod";
+  const std::vector<std::string> small{"--ns", "32", "--nr", "40", "--quiet"};
+  const auto with = [&](std::vector<std::string> a) {
+    a.insert(a.end(), small.begin(), small.end());
+    return a;
+  };
+  REQUIRE(run(with({"segment", f / "city", "-o", city}), log));
+  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city}), log));
+  CHECK(slurp(log).find("not analysed") != std::string::npos);
+  REQUIRE(run({"analyze", city}, log));
+  REQUIRE(run(with({"build", f / "alone/h2.off", "-o", f / "out", "--prior", city}), log));
+  CHECK(slurp(f.path() / "out" / "report.json").find("\"prior\": true") != std::string::npos);
+  CHECK(!run(with({"build", f / "alone/h2.off", "-o", f / "x", "--prior", city, "--layers", "4"}),
+             log));
+
+  REQUIRE(run(with({"segment", f / "alone/h2.off", "-o", one}), log));
+  REQUIRE(run({"analyze", one, "--prior", city}, log));
+  // The same house stands in the city: its segments lie where they lie there.
+  const Building alone = Store(one, false).building("h2");
+  const Building there = Store(city, false).building("h2");
+  CHECK(alone.layer_of_segment == there.layer_of_segment);
+  CHECK(alone.layer_of_segment.back() > 0);
+  REQUIRE(run({"mesh", one}, log));
+  REQUIRE(run({"export", one, "-o", f / "stages", "--quiet"}, log));
+  CHECK(slurp(f.path() / "out" / "buildings" / "h2.glb") ==
+        slurp(f.path() / "stages" / "buildings" / "h2.glb"));
+  CHECK(slurp(f.path() / "stages" / "report.json").find("\"prior\": true") != std::string::npos);
+}
+
+TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees with the report") {
+  Folder f;
+  const std::string log = f / "log";
+  REQUIRE(run({"synth", "-o", f / "synth", "--buildings", "2"}, log));
+  REQUIRE(run({"build", f / "synth", "-o", f / "out", "--ns", "24", "--nr", "24", "--quiet",
+               "--truth", f / "synth/truth.json"},
+              log));
+  const std::string out = f / "eval";
+  const std::string command = std::string(COLOD_BINARY) + " eval --truth " +
+                              (f / "synth/truth.json") + " " + (f / "out") + " >" + out;
+  REQUIRE(std::system(command.c_str()) == 0);
+  const std::string text = slurp(out), report = slurp(f.path() / "out" / "report.json");
+  CHECK(text.find("\"on_majority_layer\"") != std::string::npos);
+  CHECK(count_of(text, "buildings_agreeing") == count_of(report, "buildings_agreeing"));
+  CHECK(!run({"eval", f / "out", "--truth", f / "out/report.json"}, log));
+  CHECK(!run({"eval", f / "out"}, log));
+}
+
+TEST_CASE(
+    "next to nothing to analyse: one building, twins, all alike, one segment, 1, 2, 5 layers") {
+  const auto source = [](const Mesh& mesh, const std::string& name) {
+    return test::as_source(mesh, name);
+  };
+  const Mesh block = test::box_mesh({0, 0, 0}, {10, 8, 6});
+  const std::vector<std::vector<Source>> scenes{
+      {source(house(1), "one")},
+      {source(house(1), "a"), source(house(1), "b")},
+      {source(block, "a"), source(block, "b"), source(block, "c")},
+      {source(block, "bare"), source(house(3), "rich")}};
+  for (const int layers : {1, 2, 5})
+    for (const auto& sources : scenes) {
+      Options o;
+      o.ns = 16, o.nr = 24, o.layers = layers;
+      const Scene scene = build_scene({sources, {}}, o);
+      for (const Building& b : scene.buildings) {
+        INFO(b.source.name << ", " << layers << " layers of " << sources.size() << " "
+                           << b.failure);
+        REQUIRE(b.layers.size() == static_cast<std::size_t>(layers));
+        for (const Layer& layer : b.layers) CHECK(layer.validity.is_watertight);
+        for (const int l : b.layer_of_segment) CHECK((l >= 0 && l < layers));
+        CHECK(std::count(b.layer_of_segment.begin(), b.layer_of_segment.end(), 0) >= 1);
+      }
+      if (sources.size() == 2 && sources[0].name == "a")
+        CHECK(scene.buildings[0].layer_of_segment == scene.buildings[1].layer_of_segment);
+    }
+}

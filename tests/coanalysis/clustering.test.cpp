@@ -1,0 +1,313 @@
+#include "coanalysis/clustering.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "coanalysis/clustering_neighbours.h"
+#include "core/parallel.h"
+#include "selection_helpers.h"
+#include "similarity_helpers.h"
+
+using namespace colod;
+using namespace colod::test;
+
+namespace {
+
+// A segment of a kind: its own histogram and, by `spread`, a little noise.
+Descriptor of_kind(int kind, double extent, std::mt19937_64& random, double spread = 0.02) {
+  const auto noise = [&] {
+    return 1 + spread * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
+  };
+  Descriptor d;
+  d.d2[8 * kind + 4] = 0.5 * noise();
+  d.d2[8 * kind + 6] = 1 - d.d2[8 * kind + 4];
+  d.extent = extent * noise();
+  d.eigenvalues = d.extent * d.extent * Vec3(1, 0.5, 0.3);
+  d.volume = d.extent * d.extent * d.extent;
+  return d;
+}
+
+// Kinds 0, 1, …: extents 4, 1, 1/4, …; `each` of them, mixed.
+std::vector<Descriptor> kinds(int count, int each) {
+  std::mt19937_64 random(1);
+  std::vector<Descriptor> segments;
+  for (int i = 0; i < count * each; ++i)
+    segments.push_back(of_kind(i % count, 4 * std::pow(0.25, i % count), random));
+  return segments;
+}
+
+// Two boxes a metre apart, a strip of no segment that touches the first, and one that touches none.
+struct TwoBoxes {
+  Planes planes;
+  Segments segments;
+
+  TwoBoxes() {
+    add_segment(box_mesh({0, 0, 0}, {4, 4, 4}), planes, segments);
+    add_segment(box_mesh({5, 0, 0}, {6, 1, 1}), planes, segments);
+    add_loose({{4.2, 2, 1}, {4.2, 3, 1}, {4.2, 3, 2}});
+    add_loose({{4, 9, 9}, {5, 9, 9}, {5, 10, 9}});
+    add_loose({{6, 1.1, 0}, {6, 1.1, 1}, {7, 1.1, 1}});
+  }
+  void add_loose(const std::vector<Vec3>& corners) {
+    planes.planes.push_back(plane_of_faces({corners, {{0, 1, 2}}}, 0, 1));
+    segments.segment_of_plane.push_back(-1);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what is of a form is on one layer, whatever its size") {
+  std::vector<Descriptor> segments = kinds(2, 12);
+  for (const int i : {0, 2, 4, 1}) segments[i].form = Form::kTray;
+  for (const int i : {3, 5, 6}) segments[i].form = Form::kNiche;
+  const std::vector<int> layer = cluster_segments(segments, {}).layer;
+  CHECK(layer[8] == 1);
+  CHECK(layer[9] == 2);
+  for (const int i : {0, 2, 4, 1}) CHECK(layer[i] == 1);
+  for (const int i : {3, 5, 6}) CHECK(layer[i] == 2);
+}
+
+TEST_CASE("kinds that differ are told apart and ordered by size") {
+  for (const bool is_paper : {false, true})
+    for (const int count : {2, 3, 4}) {
+      const auto segments = kinds(count, 7);
+      const Clustering c =
+          cluster_segments(segments, {.is_paper = is_paper, .layers = count + 1, .eta = 20});
+      for (std::size_t i = 0; i < segments.size(); ++i)
+        CHECK(c.layer[i] == 1 + static_cast<int>(i) % count);
+      CHECK(c.warnings.empty());
+      CHECK(c.eigenvalues[0] == Approx(0).margin(1e-9));
+      CHECK(std::is_sorted(c.eigenvalues.begin(), c.eigenvalues.end()));
+    }
+}
+
+TEST_CASE("Lanczos and the full solver agree on many segments") {
+  const auto segments = kinds(3, 150);  // more than the full solver takes
+  const Clustering many = cluster_segments(segments, {.layers = 4, .eta = 20});
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    CHECK(many.layer[i] == 1 + static_cast<int>(i) % 3);
+  CHECK(many.eigenvalues.size() == 10);
+}
+
+TEST_CASE("beyond the dense limit nearest neighbours keep the kinds") {
+  const auto segments = kinds(2, 1600);
+  const Clustering c = cluster_segments(segments, {.layers = 3, .eta = 4});
+  int wrong = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    wrong += c.layer[i] != 1 + static_cast<int>(i) % 2;
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, similarities exact") {
+  std::mt19937_64 random(5);
+  std::vector<Descriptor> segments;
+  for (int i = 0; i < 600; ++i) segments.push_back(random_descriptor(i % 6, random));
+  std::vector<int> ids(600);
+  for (int i = 0; i < 600; ++i) ids[i] = i;
+  const auto near = nearest_neighbours(segments, ids, 20, 4);
+  int found = 0;
+  for (int i = 0; i < 600; ++i) {
+    std::vector<double> all;
+    for (int j = 0; j < 600; ++j)
+      if (j != i) all.push_back(segment_similarity(segments[i], segments[j], 4));
+    std::sort(all.rbegin(), all.rend());
+    REQUIRE(near[i].size() == 20);
+    for (const Neighbour& n : near[i]) {
+      CHECK(n.index != i);
+      CHECK(n.similarity == Approx(segment_similarity(segments[i], segments[n.index], 4)));
+      found += n.similarity >= all[19] - 1e-12;
+    }
+  }
+  CHECK(found > 0.7 * 600 * 20);
+}
+
+TEST_CASE("nearest neighbours: one, none, all alike, not a number") {
+  std::mt19937_64 random(6);
+  CHECK(nearest_neighbours({}, {}, 5, 4).empty());
+  std::vector<Descriptor> segments(1, of_kind(1, 2, random));
+  CHECK(nearest_neighbours(segments, {0}, 5, 4)[0].empty());
+  segments.assign(300, segments[0]);
+  segments[7].eigenvalues[1] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> ids(300);
+  for (int i = 0; i < 300; ++i) ids[i] = i;
+  const auto near = nearest_neighbours(segments, ids, 5, 4);
+  CHECK(near[8].size() == 5);
+}
+
+TEST_CASE("flat segments go to the layer of their size, without moving the others") {
+  auto segments = kinds(2, 6);
+  const std::vector<int> without = cluster_segments(segments, {.eta = 20}).layer;
+  std::mt19937_64 random(2);
+  for (const double extent : {3.0, 0.7}) {
+    segments.push_back(of_kind(6, extent, random));
+    segments.back().is_flat = true;
+  }
+  const std::vector<int> with = cluster_segments(segments, {.eta = 20}).layer;
+  CHECK(std::equal(without.begin(), without.end(), with.begin()));
+  CHECK(with[12] == 1);
+  CHECK(with[13] == 2);
+}
+
+TEST_CASE("by size: one absolute threshold a layer") {
+  std::mt19937_64 random(1);
+  std::vector<Descriptor> segments;
+  for (const double extent : {2.0, 0.9, 0.7, 0.1}) segments.push_back(of_kind(0, extent, random));
+  CHECK(cluster_segments(segments, {.layering = Layering::kSize, .layers = 3}).layer ==
+        std::vector<int>{1, 1, 2, 2});
+  CHECK(cluster_segments(segments, {.layering = Layering::kSize, .layers = 4}).layer ==
+        std::vector<int>{1, 2, 2, 3});
+}
+
+TEST_CASE("none, one, fewer than clusters, identical, flat only, no extent") {
+  std::mt19937_64 random(1);
+  CHECK(cluster_segments({}).layer.empty());
+  const Descriptor big = of_kind(0, 3, random), small = of_kind(1, 0.2, random);
+  CHECK(cluster_segments({big}).layer == std::vector<int>{1});
+  CHECK(cluster_segments({small}).layer == std::vector<int>{2});
+  CHECK(cluster_segments({big, small}, {.layers = 1}).layer == std::vector<int>{0, 0});
+  CHECK(cluster_segments({big, small}, {.layers = 2}).layer == std::vector<int>{1, 1});
+  CHECK(cluster_segments({big, small}, {.layers = 5}).layer[0] == 1);
+  CHECK(cluster_segments({big, small}, {.layers = 6}).layer[0] == 1);
+  CHECK(cluster_segments(std::vector<Descriptor>(9, small)).layer == std::vector<int>(9, 2));
+  Descriptor nothing;
+  nothing.is_flat = true;
+  CHECK(cluster_segments({nothing, nothing, nothing}).layer == std::vector<int>{2, 2, 2});
+  nothing.eigenvalues[0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(cluster_segments({nothing, big, small}, {.is_paper = true}).layer.size() == 3);
+}
+
+TEST_CASE("layers stay within 1 and l_n − 1, whatever the numbers") {
+  std::mt19937_64 random(8);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Descriptor> segments;
+    for (int i = 0; i < 12; ++i) {
+      segments.push_back(of_kind(static_cast<int>(random() % 8), 0.1 + random() % 5, random, 1));
+      segments.back().is_flat = random() % 3 == 0;
+    }
+    const ClusteringOptions options{.is_paper = trial % 2 == 0, .layers = 2 + trial % 4};
+    for (const int layer : cluster_segments(segments, options).layer) {
+      CHECK(layer >= 1);
+      CHECK(layer < options.layers);
+    }
+  }
+}
+
+TEST_CASE("a permutation of the segments permutes the layers; threads change nothing") {
+  const auto segments = kinds(3, 8);
+  const auto layer = cluster_segments(segments, {.layers = 4, .eta = 20}).layer;
+  std::vector<Descriptor> reversed(segments.rbegin(), segments.rend());
+  auto back = cluster_segments(reversed, {.layers = 4, .eta = 20}).layer;
+  std::reverse(back.begin(), back.end());
+  CHECK(back == layer);
+  limit_threads(1);
+  const Clustering one = cluster_segments(kinds(3, 150), {.seed = 5});
+  limit_threads(0);
+  const Clustering all = cluster_segments(kinds(3, 150), {.seed = 5});
+  CHECK(one.layer == all.layer);
+  CHECK(one.eigenvalues == all.eigenvalues);
+}
+
+TEST_CASE("a layer's planes: its segments' and the loose ones that touch them") {
+  const TwoBoxes t;
+  const std::vector<int> layer{0, 1};
+  std::vector<int> first(12), both(24);
+  for (int i = 0; i < 24; ++i) (i < 12 ? first[i] = i : 0), both[i] = i;
+  first.push_back(24);
+  both.insert(both.end(), {24, 26});
+  CHECK(layer_planes(t.planes, t.segments, layer, 0) == first);
+  CHECK(layer_planes(t.planes, t.segments, layer, 1) == both);
+  CHECK(layer_planes(t.planes, t.segments, layer, 9) == both);
+  CHECK(layer_planes(t.planes, t.segments, {1, 2}, 0).empty());
+}
+
+TEST_CASE("touching reaches as far as twice the planes' distance, and through crossings") {
+  TwoBoxes t;
+  t.planes.distance = 3;
+  CHECK(layer_planes(t.planes, t.segments, {0, 1}, 0).size() == 12 + 2);
+  TwoBoxes crossed;  // a blade whose corners are all far from the wall it cuts
+  crossed.add_loose({{-5, 2, 2.01}, {9, 2, 2}, {-5, 2, 2.02}});
+  const auto planes = layer_planes(crossed.planes, crossed.segments, {0, 1}, 0);
+  CHECK(planes.back() == 27);
+}
+
+TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
+  Planes planes;
+  Segments segments;
+  const auto add = [&](double area, int segment) {
+    Plane p;
+    p.area = area;
+    p.outline.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    p.outline.triangles = {{0, 1, 2}};
+    if (segment >= 0) segments.segments[segment].planes.push_back(int(planes.planes.size()));
+    planes.planes.push_back(p);
+  };
+  segments.segments.resize(2);
+  for (const double area : {60.0, 37.0, 2.0, 1.0}) add(area, 0);
+  for (const double area : {1.5, 0.5}) add(area, 1);
+  for (const double area : {2.5, 1.9}) add(area, -1);
+  const std::vector<int> layer{0, 1};
+  const auto at = [&](int k) { return layer_planes(planes, segments, layer, k, {false, 3}); };
+  CHECK(at(0).size() == 6);  // so few that none has to
+  for (int i = 0; i < 9; ++i) add(60, 0);
+  const auto at_large = [&](int k) {
+    std::vector<int> result = at(k);
+    CHECK(std::count_if(result.begin(), result.end(), [](int p) { return p >= 8; }) == 9);
+    std::erase_if(result, [](int p) { return p >= 8; });
+    return result;
+  };
+  CHECK(at_large(0) == std::vector<int>{0, 1, 6});
+  CHECK(at_large(1) == std::vector<int>{0, 1, 4, 5, 6});
+  CHECK(at_large(2).size() == 8);
+  CHECK(layer_planes(planes, segments, layer, 0).size() == 6 + 9);  // the paper's
+  CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8 + 9);
+  add(10, 0);  // small enough with the others, but not by itself
+  CHECK(at(0).back() == 17);
+}
+
+TEST_CASE("spares are the larger planes that layer 0 lacks, a set a plain segment") {
+  Planes planes;
+  Segments segments;
+  segments.segments.resize(4);
+  const auto add = [&](double area, int segment) {
+    Plane p;
+    p.area = area;
+    if (segment >= 0) segments.segments[segment].planes.push_back(int(planes.planes.size()));
+    segments.segment_of_plane.push_back(segment);
+    planes.planes.push_back(p);
+  };
+  for (const double area : {50.0, 20.0, 5.0}) add(area, 0);  // the last one waits
+  for (const double area : {8.0, 0.3, 6.0}) add(area, 1);
+  add(4, 2), add(0.9, 3), add(5.8, -1);
+  segments.segments[2].form = Form::kBay;
+  const auto spares = spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1});
+  CHECK(spares == std::vector<std::vector<int>>{{3, 5}, {2, 8}});
+  CHECK(spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1, 2, 3, 5, 8}).empty());
+}
+
+TEST_CASE("the planes of a layer are among those of the next") {
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 10; ++trial) {
+    Planes planes;
+    Segments segments;
+    std::vector<int> layer;
+    const auto at = [&] { return static_cast<double>(random() % 60) / 10; };
+    for (int i = 0; i < 12; ++i) {
+      const Vec3 corner(at(), at(), at());
+      if (i % 3 == 0) {
+        planes.planes.push_back(plane_of_faces(
+            {{corner, corner + Vec3(1, 0, 0), corner + Vec3(0, 1, 0)}, {{0, 1, 2}}}, 0, 1));
+        segments.segment_of_plane.push_back(-1);
+      } else {
+        add_segment(box_mesh(corner, corner + Vec3(1, 1, 1)), planes, segments);
+        layer.push_back(static_cast<int>(random() % 3));
+      }
+    }
+    for (int k = 0; k < 6; ++k) {
+      const LayerPlanesOptions options{k < 3, 4};
+      const auto a = layer_planes(planes, segments, layer, k % 3, options);
+      const auto b = layer_planes(planes, segments, layer, k % 3 + 1, options);
+      CHECK(std::is_sorted(a.begin(), a.end()));
+      CHECK(std::includes(b.begin(), b.end(), a.begin(), a.end()));
+    }
+  }
+}

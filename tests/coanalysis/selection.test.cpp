@@ -1,0 +1,392 @@
+#include "coanalysis/selection.h"
+
+#include <catch2/catch.hpp>
+
+#include "coanalysis/selection_model.h"
+#include "core/parallel.h"
+#include "selection_helpers.h"
+
+using namespace colod;
+using namespace colod::test;
+using Choices = std::vector<std::vector<char>>;
+
+namespace {
+
+int segment_count(const std::vector<SelectionBuilding>& buildings) {
+  int n = 0;
+  for (const auto& b : buildings) n += static_cast<int>(b.segments.size());
+  return n;
+}
+
+// E_0 straight from the paper's formulas: no model, no reduction.
+double plain_objective(const std::vector<SelectionBuilding>& buildings, const Choices& keep,
+                       const SelectionOptions& o) {
+  double e = 0;
+  for (std::size_t i = 0; i < buildings.size(); ++i) {
+    const auto& b = buildings[i];
+    double fr = 0, kept_area = 0, area = 0, fco = 0;
+    for (const Coverage& c : b.coverage)
+      for (const int s : c.segments)
+        if (keep[i][s]) {
+          fr += c.share;
+          break;
+        }
+    for (std::size_t s = 0; s < b.segments.size(); ++s)
+      area += b.segments[s].area, kept_area += keep[i][s] ? b.segments[s].area : 0;
+    for (std::size_t s = 0; s < b.segments.size(); ++s) {
+      if (keep[i][s]) continue;
+      for (std::size_t j = 0; j < buildings.size(); ++j) {
+        double best = 0;
+        for (std::size_t t = 0; t < buildings[j].segments.size() && j != i; ++t)
+          if (!keep[j][t])
+            best =
+                std::max(best, segment_similarity(b.segments[s], buildings[j].segments[t], o.eta));
+        const double others = static_cast<double>(buildings.size()) - 1;
+        fco += o.is_paper ? best : best * b.segments[s].area / area / std::max(1.0, others);
+      }
+    }
+    if (fr <= (o.is_paper ? 0.8 : 0.95)) return -std::numeric_limits<double>::infinity();
+    e += fr - o.beta * kept_area / area + o.lambda * fco;
+  }
+  return e;
+}
+
+double enumerated_optimum(const std::vector<SelectionBuilding>& buildings,
+                          const SelectionOptions& o) {
+  const int n = segment_count(buildings);
+  double best = -std::numeric_limits<double>::infinity();
+  for (unsigned mask = 0; mask < 1u << n; ++mask) {
+    Choices keep;
+    int bit = 0;
+    for (const auto& b : buildings) {
+      keep.emplace_back();
+      for (std::size_t s = 0; s < b.segments.size(); ++s) keep.back().push_back(mask >> bit++ & 1);
+    }
+    best = std::max(best, plain_objective(buildings, keep, o));
+  }
+  return best;
+}
+
+SelectionOptions rules(bool is_paper, int exact_segments) {
+  SelectionOptions o;
+  o.is_paper = is_paper, o.exact_segments = exact_segments, o.main_share = 0;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("lp_solve, and the ascent under its bound, against enumeration") {
+  for (const bool is_paper : {false, true})
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      const RandomScene shape{.buildings = 3, .segments = 4, .body = seed % 2 ? 0.6 : 0.93};
+      const auto scene = random_scene(shape, seed);
+      const double best = enumerated_optimum(scene, rules(is_paper, 0));
+      const Selection exact = select_layer0(scene, rules(is_paper, 40));
+      const Selection ascent = select_layer0(scene, rules(is_paper, 0));
+      CHECK(exact.status == SelectionStatus::kOptimal);
+      CHECK(exact.objective == Approx(best).epsilon(1e-6));
+      CHECK(ascent.bound >= best - 1e-6);
+      CHECK(ascent.objective <= best + 1e-6);
+      CHECK(ascent.objective >= best * 0.995);
+      CHECK(ascent.gap < 0.05);
+      CHECK(plain_objective(scene, ascent.is_layer0, rules(is_paper, 0)) ==
+            Approx(ascent.objective).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("E_0 of any choice is the paper's formula, and a broken bound is minus infinity") {
+  const auto scene = random_scene({.buildings = 3, .segments = 5}, 7);
+  std::mt19937_64 random(1);
+  for (int trial = 0; trial < 60; ++trial) {
+    Choices keep;
+    for (const auto& b : scene) {
+      keep.emplace_back();
+      for (std::size_t s = 0; s < b.segments.size(); ++s) keep.back().push_back(random() % 4 != 0);
+    }
+    for (const bool is_paper : {false, true}) {
+      const double expected = plain_objective(scene, keep, rules(is_paper, 0));
+      const double got = selection_objective(scene, keep, rules(is_paper, 0));
+      if (std::isfinite(expected))
+        CHECK(got == Approx(expected).epsilon(1e-6));
+      else
+        CHECK(got == expected);
+    }
+  }
+}
+
+TEST_CASE("prototypes: objective and bound enclose what comparing all pairs finds") {
+  for (const bool is_paper : {false, true})
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      const auto scene = random_scene({.buildings = 12, .segments = 8}, seed);
+      SelectionOptions all = rules(is_paper, 0), few = all;
+      few.exact_similarities = 0, few.prototypes = 24;
+      const Selection exact = select_layer0(scene, all);
+      const Selection shared = select_layer0(scene, few);
+      CHECK(!shared.is_exact);
+      CHECK(exact.is_exact);
+      // E_0 of the choice lies above what is said of it, the optimum below the bound.
+      CHECK(selection_objective(scene, shared.is_layer0, all) >= shared.objective - 1e-6);
+      CHECK(shared.bound >= exact.objective - 1e-6);
+      CHECK(shared.gap >= exact.gap - 1e-6);
+    }
+}
+
+TEST_CASE("as many prototypes as segments lose next to nothing") {
+  const auto scene = random_scene({.buildings = 6, .segments = 6}, 2);
+  SelectionOptions all = rules(false, 0), few = all;
+  few.exact_similarities = 0, few.prototypes = 1000;
+  CHECK(select_layer0(scene, few).objective ==
+        Approx(select_layer0(scene, all).objective).epsilon(0.02));
+}
+
+TEST_CASE("prototypes: nothing finite, all alike, one building") {
+  SelectionOptions few = rules(false, 0);
+  few.exact_similarities = 0;
+  std::mt19937_64 random(1);
+  SelectionBuilding bad, alike;
+  bad.segments.resize(30), alike.segments.assign(30, random_descriptor(2, random));
+  for (Descriptor& d : bad.segments) d.eigenvalues[0] = std::numeric_limits<double>::quiet_NaN();
+  for (int s = 0; s < 30; ++s)
+    bad.coverage.push_back({{s}, 1.0 / 30}), alike.coverage.push_back({{s}, 1.0 / 30});
+  for (const auto& scene : std::vector<std::vector<SelectionBuilding>>{
+           {bad, bad}, {alike, alike, alike}, {alike}, {bad, alike}}) {
+    const Selection s = select_layer0(scene, few);
+    CHECK(std::isfinite(s.objective));
+    CHECK(s.bound >= s.objective);
+    CHECK(s.gap < 0.01);
+  }
+}
+
+TEST_CASE("a gap that is good enough stops early and holds") {
+  const auto scene = random_scene({.buildings = 12, .segments = 10}, 4);
+  SelectionOptions loose = rules(false, 0), tight = loose;
+  loose.gap = 0.05, tight.gap = 0;
+  const Selection a = select_layer0(scene, loose), b = select_layer0(scene, tight);
+  CHECK(a.gap <= 0.05);
+  CHECK(a.starts < b.starts);
+  CHECK(b.gap <= a.gap);
+  CHECK(a.bound >= b.objective - 1e-9);
+}
+
+TEST_CASE("up to 15 binaries: the optimum, called so, whatever gap is good enough") {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const RandomScene shape{.buildings = 2 + static_cast<int>(seed % 4), .segments = 3};
+    const auto scene = random_scene(shape, 100 + seed);
+    SelectionOptions o = rules(seed % 2, 40);
+    o.gap = 0.05;
+    const Selection s = select_layer0(scene, o);
+    CHECK(s.status == SelectionStatus::kOptimal);
+    CHECK(s.objective == Approx(enumerated_optimum(scene, o)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a block's branch and bound against enumeration, alone and with an offer") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto scene = random_scene({.buildings = 2, .segments = 9, .body = 0.7}, seed);
+    const selection::Model model = selection::build_model(scene, rules(seed % 2, 0));
+    const selection::Block& block = model.blocks[0];
+    std::mt19937_64 random(seed);
+    std::vector<double> profit(model.size());
+    for (double& p : profit) p = 0.1 * uniform(random);
+    selection::Offer offer{&model, std::vector<double>(model.size(), 0.0)};
+    for (int t = block.count; t < model.size(); ++t) offer.weights[t] = 0.02 * uniform(random);
+    for (const selection::Offer* o : {static_cast<const selection::Offer*>(nullptr),
+                                      static_cast<const selection::Offer*>(&offer)}) {
+      double best = -1e9;
+      for (unsigned mask = 0; mask < 1u << block.count; ++mask) {
+        selection::Choice x(model.size(), 0);
+        std::vector<int> set;
+        double value = 0;
+        for (int k = 0; k < block.count; ++k)
+          if (mask >> k & 1) x[k] = 1, set.push_back(k), value += profit[k];
+        const double loss = block_loss(block, x);
+        if (loss <= block.capacity) best = std::max(best, value - loss + (o ? o->value(set) : 0));
+      }
+      const auto solution = selection::solve_block(block, profit, o, 100000);
+      CHECK(solution.value == Approx(best).margin(1e-9));
+      CHECK(solution.bound >= best - 1e-12);
+      CHECK(solution.bound <= best + 1e-8);
+      CHECK(selection::solve_block(block, profit, o, 2).bound >= best - 1e-12);
+    }
+  }
+}
+
+TEST_CASE("the bound stands above the optimum that lp_solve proves") {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const auto scene = random_scene({.buildings = 4, .segments = 7, .body = 0.8}, seed);
+    const Selection exact = select_layer0(scene, rules(seed % 2, 40));
+    const Selection ascent = select_layer0(scene, rules(seed % 2, 0));
+    REQUIRE(exact.status == SelectionStatus::kOptimal);
+    CHECK(ascent.bound >= exact.objective - 1e-7);
+    CHECK(ascent.objective <= exact.objective + 1e-7);
+    CHECK(ascent.objective >= 0.99 * exact.objective);
+  }
+}
+
+TEST_CASE("the same answer every time and with any number of threads") {
+  const auto scene = random_scene({.buildings = 8, .segments = 10}, 3);
+  limit_threads(1);
+  const Selection one = select_layer0(scene);
+  limit_threads(0);
+  const Selection many = select_layer0(scene);
+  CHECK(one.is_layer0 == many.is_layer0);
+  CHECK(one.bound == many.bound);
+  CHECK(one.objective == many.objective);
+}
+
+TEST_CASE("permuting the buildings permutes the answer") {
+  auto scene = random_scene({.buildings = 4, .segments = 6}, 5);
+  const Selection a = select_layer0(scene);
+  std::reverse(scene.begin(), scene.end());
+  Selection b = select_layer0(scene);
+  std::reverse(b.is_layer0.begin(), b.is_layer0.end());
+  CHECK(a.is_layer0 == b.is_layer0);
+  CHECK(a.objective == Approx(b.objective));
+}
+
+TEST_CASE("robust adds every segment with at least 2 % of the voxels, paper does not") {
+  auto scene = random_scene({.buildings = 3, .segments = 6, .overlap = 0}, 2);
+  const Selection all = select_layer0(scene);
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    for (const Coverage& c : scene[i].coverage)
+      if (c.share >= 0.02) CHECK(all.is_layer0[i][c.segments[0]]);
+  CHECK(select_layer0(scene, rules(true, 40)).added == 0);
+  CHECK(all.objective == select_layer0(scene, rules(false, 40)).objective);
+}
+
+TEST_CASE("robust: a spire needs a quarter of the voxels") {
+  const auto has_it = [](Form form, double share) {
+    SelectionBuilding church;
+    for (const double area : {1000.0, 100.0}) {
+      church.segments.emplace_back();
+      church.segments.back().area = area;
+    }
+    church.segments[1].form = form;
+    church.coverage = {{{0}, 1 - share}, {{1}, share}};
+    return select_layer0({church}).is_layer0[0][1] != 0;
+  };
+  CHECK(has_it(Form::kSpire, 0.006));
+  CHECK_FALSE(has_it(Form::kSpire, 0.004));
+  CHECK_FALSE(has_it(Form::kPlain, 0.006));
+}
+
+TEST_CASE("robust: segments of little volume leave, as far as the bound on f_r lets them") {
+  // Areas so small that the optimum alone keeps all five.
+  const std::vector<double> voxels{0.7, 0.2, 0.06, 0.015, 0.015, 0.01};
+  SelectionBuilding house;
+  for (std::size_t s = 0; s < voxels.size(); ++s) {
+    Descriptor d;
+    d.area = s == 0 ? 1000 : 0.01;
+    house.segments.push_back(d);
+    house.coverage.push_back({{static_cast<int>(s)}, voxels[s]});
+  }
+  const Selection alone = select_layer0({house});
+  CHECK(alone.is_layer0[0] == std::vector<char>{1, 1, 1, 0, 0, 0});
+  CHECK(alone.removed == 3);
+  CHECK(select_layer0({house, house}).is_layer0[1] == alone.is_layer0[0]);
+  CHECK(select_layer0({house}, rules(true, 40)).removed == 0);
+
+  house.coverage[0].share = 0.68, house.coverage[5].share = 0.03;  // main; the others fit as before
+  CHECK(select_layer0({house}).is_layer0[0] == std::vector<char>{1, 1, 1, 0, 0, 1});
+}
+
+TEST_CASE("robust: alike segments near 2 % decide together, others for themselves") {
+  const auto block = [](double share, double extent) {
+    SelectionBuilding b;
+    for (const double size : {8.0, extent}) {
+      Descriptor d;
+      d.area = 100 * size, d.extent = size, d.eigenvalues = size * size * Vec3(1, 1, 1);
+      b.segments.push_back(d);
+    }
+    b.coverage = {{{0}, 1 - share}, {{1}, share}};
+    return b;
+  };
+  const auto verdicts = [](const Selection& s) {
+    std::vector<int> out;
+    for (const auto& b : s.is_layer0) out.push_back(b[1]);
+    return out;
+  };
+  CHECK(verdicts(select_layer0({block(0.021, 1), block(0.018, 1)})) == std::vector<int>{0, 0});
+  CHECK(verdicts(select_layer0({block(0.023, 1), block(0.019, 1)})) == std::vector<int>{1, 1});
+  CHECK(verdicts(select_layer0({block(0.021, 1), block(0.018, 3)})) == std::vector<int>{1, 0});
+}
+
+TEST_CASE("robust: what is small by itself but much together stays where the bound needs it") {
+  SelectionBuilding house;
+  for (int s = 0; s < 101; ++s) {
+    house.segments.emplace_back();
+    house.segments.back().area = 1;
+    house.coverage.push_back({{s}, s == 0 ? 0.5 : 0.005});
+  }
+  const Selection result = select_layer0({house});
+  double kept = 0;
+  for (int s = 0; s < 101; ++s) kept += result.is_layer0[0][s] ? house.coverage[s].share : 0;
+  CHECK(kept > 0.95);
+  CHECK(kept < 0.95 + 0.0051);
+}
+
+TEST_CASE("no building, no segment") {
+  CHECK(select_layer0({}).status == SelectionStatus::kEmpty);
+  const Selection s = select_layer0({{}, {}});
+  CHECK(s.status == SelectionStatus::kEmpty);
+  CHECK(s.is_layer0 == Choices{{}, {}});
+}
+
+TEST_CASE("one building alone has no f_co and is solved to proof") {
+  for (const int exact : {0, 40}) {
+    const auto scene = random_scene({.buildings = 1, .segments = 12}, 4);
+    const Selection s = select_layer0(scene, rules(true, exact));
+    CHECK(s.status == SelectionStatus::kOptimal);
+    CHECK(s.objective == Approx(enumerated_optimum(scene, rules(true, 0))));
+    SelectionOptions other = rules(true, exact);
+    other.lambda = 7;
+    CHECK(select_layer0(scene, other).is_layer0 == s.is_layer0);
+  }
+}
+
+TEST_CASE("two identical buildings keep the same, and their f_co is that of each to the other") {
+  const SelectionBuilding b = random_scene({.buildings = 1, .segments = 6}, 4)[0];
+  for (const bool is_paper : {false, true})
+    for (const int exact : {0, 40}) {
+      const Selection s = select_layer0({b, b}, rules(is_paper, exact));
+      CHECK(s.is_layer0[0] == s.is_layer0[1]);
+      CHECK(s.objective == Approx(enumerated_optimum({b, b}, rules(is_paper, 0))).epsilon(2e-3));
+      CHECK(s.bound >= s.objective - 1e-9);
+    }
+}
+
+TEST_CASE("a building keeps what it has: one segment, no coverage, no area, NaN") {
+  SelectionBuilding lone, bare;
+  std::mt19937_64 random(1);
+  lone.segments = {random_descriptor(1, random)};
+  lone.coverage = {{{0}, 0.3}};  // shares that do not sum to 1 are scaled
+  bare.segments.resize(3);
+  bare.segments[1].area = std::numeric_limits<double>::quiet_NaN();
+  bare.segments[2].eigenvalues[0] = std::numeric_limits<double>::quiet_NaN();
+  for (const bool is_paper : {false, true})
+    for (const int exact : {0, 40}) {
+      const Selection s = select_layer0({lone, bare, {}}, rules(is_paper, exact));
+      CHECK(s.is_layer0[0] == std::vector<char>{1});
+      CHECK(std::count(s.is_layer0[1].begin(), s.is_layer0[1].end(), 1) >= 1);
+      CHECK(std::isfinite(s.objective));
+      CHECK(std::isfinite(s.bound));
+      CHECK(s.gap >= 0);
+    }
+}
+
+TEST_CASE("identical segments: ties are broken, not looped over") {
+  std::mt19937_64 random(1);
+  SelectionBuilding b;
+  b.segments.assign(12, random_descriptor(2, random));
+  for (int s = 0; s < 12; ++s) b.coverage.push_back({{s}, 1.0 / 12});
+  const Selection s = select_layer0({b, b, b, b}, rules(true, 0));
+  for (const auto& kept : s.is_layer0) CHECK(std::count(kept.begin(), kept.end(), 1) >= 10);
+  CHECK(s.bound >= s.objective);
+}
+
+TEST_CASE("a hundred buildings in seconds, within a few percent of the bound") {
+  const auto scene = random_scene({.buildings = 60, .segments = 9, .body = 0.9}, 9);
+  const Selection s = select_layer0(scene);
+  CHECK(s.gap < 0.05);
+  CHECK(s.gap >= 0);
+}

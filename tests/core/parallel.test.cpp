@@ -1,0 +1,30 @@
+#include "core/parallel.h"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <vector>
+
+using namespace colod;
+
+TEST_CASE("every index runs once, nested loops too, for any number of threads") {
+  for (const int threads : {1, 2, 0}) {
+    limit_threads(threads);
+    std::vector<std::atomic<int>> count(1000);
+    parallel_for(10, [&](std::size_t i) {
+      parallel_ranges(100, 7, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) ++count[i * 100 + j];
+      });
+    });
+    for (const auto& c : count) CHECK(c == 1);
+  }
+}
+
+TEST_CASE("an exception of a body reaches the caller, and nothing to do is nothing done") {
+  CHECK_THROWS_AS(parallel_for(100,
+                               [](std::size_t i) {
+                                 if (i == 50) throw std::runtime_error("x");
+                               }),
+                  std::runtime_error);
+  CHECK_NOTHROW(parallel_for(0, [](std::size_t) { throw std::runtime_error("x"); }));
+}
