@@ -117,7 +117,8 @@ std::vector<double> find_missing(const VoxelGrid& grid, const std::vector<char>&
 /// A place on the source's surface.
 struct Place {
   Beside beside;
-  double distance = 0;  ///< to the layer, where it is asked for
+  double distance = 0;     ///< to the layer, where it is asked for
+  bool is_inside = false;  ///< of the layer, and far from it: a floor that a hole shows
 };
 
 /// A place for each sample. How far a body's surface is from the layer is asked always; elsewhere
@@ -134,6 +135,8 @@ std::vector<Place> look_about(const std::vector<SurfaceSample>& samples, const V
       if (!place.beside.is_open) continue;
       place.distance =
           place.beside.body >= 0 ? layer.nearest(p).distance : distance_beyond(layer, p, reach);
+      place.is_inside =
+          place.distance > reach && layer.first_hit(p, Vec3(0.36, 0.48, 0.8)).is_inside;
     }
   });
   return places;
@@ -142,7 +145,7 @@ std::vector<Place> look_about(const std::vector<SurfaceSample>& samples, const V
 /// What of the surface is about each body.
 void measure_bodies(const std::vector<Place>& places, const VoxelGrid& grid, double unit,
                     std::vector<Body>& bodies) {
-  for (const auto& [about, distance] : places) {
+  for (const auto& [about, distance, is_inside] : places) {
     if (about.body < 0 || !about.is_open) continue;
     Body& body = bodies[about.body];
     const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
@@ -152,14 +155,15 @@ void measure_bodies(const std::vector<Place>& places, const VoxelGrid& grid, dou
   }
 }
 
-/// What of the surface that is seen from outside is far from the layer, lost bodies apart: of open
-/// pieces there is no volume to miss.
+/// What of the surface that is seen from outside is outside of the layer and far from it, lost
+/// bodies apart: of open pieces there is no volume to miss.
 LeftOut find_missed(const std::vector<Place>& places, double unit, double reach,
                     const std::vector<char>& is_lost) {
   LeftOut out;
   out.reason = LeftOut::Reason::kLost;
-  for (const auto& [about, distance] : places) {
-    if (!about.is_open || distance <= reach || (about.body >= 0 && is_lost[about.body])) continue;
+  for (const auto& [about, distance, is_inside] : places) {
+    if (!about.is_open || distance <= reach || is_inside) continue;
+    if (about.body >= 0 && is_lost[about.body]) continue;
     out.area += unit;
     out.farthest = std::max(out.farthest, distance);
   }

@@ -22,10 +22,10 @@ struct Holdings {
 /// several) of which all is outside of `layer` and farther from it than a voxel; which is as deep
 /// as a room somewhere, so that no wall that was moved counts; which the source's surface about it
 /// shows, so that no passage and no loggia counts: most of that surface is far from the layer; and
-/// which has at least 0.5 % of the whole volume. Missed is what of the surface is seen from outside
-/// and is farther from the layer than 0.5 m or 2 % of the diagonal: open pieces enclose nothing.
-/// `layer` is closed and looks outward; both in one frame. Deterministic, in parallel; about 0.3 s
-/// on one core.
+/// which has at least 0.5 % of the whole volume. Missed is what of the surface is seen from
+/// outside, is outside of the layer and farther from it than 0.5 m or 2 % of the diagonal: open
+/// pieces enclose nothing. `layer` is closed and looks outward; both in one frame. Deterministic,
+/// in parallel; about 0.3 s on one core.
 Holdings weigh_layer(const Surface& source, const Mesh& layer);
 
 }  // namespace colod
