@@ -24,6 +24,7 @@
 #include <random>
 
 #include "clustering_spectrum.h"
+#include "core/flat.h"
 #include "core/parallel.h"
 
 namespace colod {
@@ -93,13 +94,6 @@ std::vector<int> k_means(const Features& x, int k, std::uint64_t seed) {
     if (p.cost < best.cost * (1 - 1e-12)) best = std::move(p);
   }
   return best.cluster;
-}
-
-double median(std::vector<double> values) {
-  assert(!values.empty());
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 double log_extent(const Descriptor& d) { return std::log(std::max(d.extent, kLeastExtent)); }

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/flat.h"
 #include "parts.h"
 
 namespace colod {
@@ -20,17 +21,6 @@ namespace {
 constexpr double kGrowth = 0.1;  // metres that a rim reaches beyond its part
 constexpr int kRays = 16;        // that tell a room
 
-bool covers(const Plane& plane, const Vec3& x) {
-  const std::vector<Vec3>& v = plane.outline.vertices;
-  return std::any_of(plane.outline.triangles.begin(), plane.outline.triangles.end(),
-                     [&](const Face& f) {
-                       for (int c = 0; c < 3; ++c)
-                         if ((v[f[(c + 1) % 3]] - v[f[c]]).cross(x - v[f[c]]).dot(plane.normal) < 0)
-                           return false;
-                       return true;
-                     });
-}
-
 /// 1: a ray first meets the front of a plane, −1: the back, 0: none.
 int first_side(const std::vector<Panel>& panels, const Vec3& from, const Vec3& direction) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -38,7 +28,8 @@ int first_side(const std::vector<Panel>& panels, const Vec3& from, const Vec3& d
   for (const Panel& p : panels) {
     const double slope = p.plane->normal.dot(direction);
     const double t = std::abs(slope) > 1e-6 ? -p.plane->signed_distance(from) / slope : -1;
-    if (t <= 0 || t >= nearest || !covers(*p.plane, from + t * direction)) continue;
+    if (t <= 0 || t >= nearest || !covers(p.plane->outline, p.plane->normal, from + t * direction))
+      continue;
     nearest = t, side = slope < 0 ? 1 : -1;
   }
   return side;

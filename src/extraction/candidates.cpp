@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/flat.h"
 
 namespace colod {
 namespace {
@@ -26,27 +27,6 @@ constexpr double kSnapCosine = 0.9998;  // 1.1 degrees
 constexpr double kRidge = 0.5;          // metres that a ridge may rise above the outlines at it
 constexpr double kSteepest = 0.1, kFlattest = 0.995;  // cosines of a pitched roof's slope
 constexpr double kThinnest = 0.5;  // metres: a layer flatter than this is extruded inward
-
-std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  std::vector<Vec2> hull;
-  for (const int pass : {0, 1}) {
-    const std::size_t start = hull.size() + 1;
-    for (const Vec2& p : points) {
-      while (hull.size() > start) {
-        const Vec2 a = hull.back() - hull[hull.size() - 2], b = p - hull.back();
-        if (a.x() * b.y() - a.y() * b.x() > 0) break;
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    if (pass == 0) std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
 
 /// A range of all outline vertices of the given planes.
 Box outline_box(const Planes& planes, const std::vector<int>& which) {

@@ -18,6 +18,7 @@
 
 #include "candidates.h"
 #include "core/error.h"
+#include "core/flat.h"
 #include "labels.h"
 #include "sheets.h"
 #include "surface.h"
@@ -306,28 +307,13 @@ bool is_spent(const Sight& sight) {
   return sight.cells > kMostCells || sight.most_cells > kLargestPartition;
 }
 
-Sight::Sight(const Planes& planes) : rays(outline_soup(planes)) {}
+Sight::Sight(const Planes& planes) : rays(outline_soup(planes.planes)) {}
 
 std::size_t Sight::Hash::operator()(const Vec3& p) const {
   std::uint64_t h = 0;
   for (int i = 0; i < 3; ++i)
     h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 0x9E3779B97F4A7C15ull, h ^= h >> 29;
   return h;
-}
-
-Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle) {
-  Mesh soup;
-  if (plane_of_triangle) plane_of_triangle->clear();
-  for (std::size_t p = 0; p < planes.planes.size(); ++p) {
-    const Outline& outline = planes.planes[p].outline;
-    const int first = static_cast<int>(soup.vertices.size());
-    soup.vertices.insert(soup.vertices.end(), outline.vertices.begin(), outline.vertices.end());
-    for (const Face& f : outline.triangles) {
-      soup.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
-      if (plane_of_triangle) plane_of_triangle->push_back(static_cast<int>(p));
-    }
-  }
-  return soup;
 }
 
 }  // namespace colod

@@ -79,7 +79,4 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
 /// The building has made so much work that no further attempt on a layer is due.
 bool is_spent(const Sight& sight);
 
-/// All planes' outline triangles in one soup, in plane order.
-Mesh outline_soup(const Planes& planes, std::vector<int>* plane_of_triangle = nullptr);
-
 }  // namespace colod

@@ -16,6 +16,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "core/spread.h"
 #include "extraction.h"
@@ -84,7 +85,7 @@ class Joiner {
         is_joined_(spares.size(), 0),
         points_of_(spares.size()) {
     std::vector<int> plane_of_triangle;
-    const Samples outlines = spread(outline_soup(planes, &plane_of_triangle));
+    const Samples outlines = spread(outline_soup(planes.planes, &plane_of_triangle));
     points_ = outlines.points;
     for (std::size_t s = 0; s < spares.size(); ++s)
       for (std::size_t i = 0; i < points_.size(); ++i)

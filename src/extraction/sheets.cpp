@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "core/spread.h"
 
@@ -36,15 +37,6 @@ constexpr double kInset = 0.06;        // metres from a border: where it is look
 constexpr double kShortest = 0.15;     // metres of a border's part that is cut
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-bool covers(const Outline& outline, const Vec3& normal, const Vec3& x) {
-  const std::vector<Vec3>& v = outline.vertices;
-  return std::any_of(outline.triangles.begin(), outline.triangles.end(), [&](const Face& f) {
-    for (int c = 0; c < 3; ++c)
-      if ((v[f[(c + 1) % 3]] - v[f[c]]).cross(x - v[f[c]]).dot(normal) < 0) return false;
-    return true;
-  });
-}
 
 /// Tells the places of sheets.
 class Looker {

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/flat.h"
 #include "core/rays.h"
 
 namespace colod {
@@ -128,12 +129,6 @@ TruthBuilding read_labelled_building(const std::string& name, const nlohmann::js
     else
       building.parts.push_back({kind, object.at("index"), -1, -1});
   return building;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
 TypeConsistency tally_type(const std::string& type, const std::vector<const PlacedPart*>& parts,

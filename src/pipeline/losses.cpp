@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/flat.h"
 #include "measure/lost_bodies.h"
 #include "measure/scene_part.h"
 #include "scene/left_out.h"
@@ -68,7 +69,7 @@ std::string describe(const LeftOut& l) {
 }  // namespace
 
 Surface surface_of(const Building& b) {
-  if (!b.source.is_mesh()) return outline_soup(b.planes);
+  if (!b.source.is_mesh()) return outline_soup(b.planes.planes);
   Mesh surface{b.source.mesh.vertices, {}};
   for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
     if (b.planes.plane_of_item[f] != kFloater) surface.faces.push_back(b.source.mesh.faces[f]);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "core/spread.h"
@@ -26,22 +27,6 @@ constexpr double kOpenSky = 0.7;        // share of steep rays that leave a roof
 constexpr double kAirborneShare = 0.5;  // of the planes' area that is roof
 constexpr double kBesideWall = 0.5;     // metres off a wall, where a roof would stand above
 constexpr double kSheltered = 0.6, kUnsheltered = 0.25;  // share of steep rays that meet it
-
-struct Soup {
-  std::vector<Vec3> vertices;
-  std::vector<Face> triangles;
-};
-
-Soup outline_soup(const std::vector<Plane>& planes) {
-  Soup soup;
-  for (const Plane& p : planes) {
-    const int base = static_cast<int>(soup.vertices.size());
-    soup.vertices.insert(soup.vertices.end(), p.outline.vertices.begin(), p.outline.vertices.end());
-    for (const Face& t : p.outline.triangles)
-      soup.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  }
-  return soup;
-}
 
 /// Places spread evenly over the outline's area, the same at every call.
 std::vector<Vec3> spread_samples(const Outline& outline, int count) {
@@ -129,9 +114,9 @@ void flip(Plane& plane) {
 }  // namespace
 
 int repair_orientation(std::vector<Plane>& planes, bool is_cloud) {
-  const Soup soup = outline_soup(planes);
-  if (soup.triangles.empty()) return 0;
-  const RayScene scene(soup.vertices, soup.triangles);
+  const Mesh soup = outline_soup(planes);
+  if (soup.faces.empty()) return 0;
+  const RayScene scene(soup);
   const std::vector<Vec3> up = ring_directions(64, std::array<double, 4>{1, 20, 45, 70});
   const std::vector<Vec3> down = ring_directions(32, std::array<double, 2>{-5, -15});
   const bool is_from_air = is_cloud && is_airborne(planes);

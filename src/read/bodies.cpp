@@ -10,6 +10,8 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "core/flat.h"
+
 namespace colod::mesh_io {
 
 namespace {
@@ -120,27 +122,10 @@ bool has_four_walls(const std::array<double, kBins>& walls, double area) {
 /// The corners of the convex hull in plan, counter-clockwise.
 std::vector<Vec2> plan_hull(const std::vector<Vec3>& points, const std::vector<Face>& faces,
                             const std::vector<int>& chosen) {
-  std::vector<Vec2> all, hull;
+  std::vector<Vec2> all;
   for (const int t : chosen)
     for (const int v : faces[t]) all.push_back(points[v].head<2>());
-  std::sort(all.begin(), all.end(), [](const Vec2& a, const Vec2& b) {
-    return std::make_pair(a.x(), a.y()) < std::make_pair(b.x(), b.y());
-  });
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  const auto turns_left = [&](const Vec2& p) {
-    const Vec2 a = hull.back() - hull[hull.size() - 2], b = p - hull.back();
-    return a.x() * b.y() - a.y() * b.x() > 0;
-  };
-  for (int pass = 0; pass < 2; ++pass) {  // the lower side, then the upper one
-    const std::size_t begin = hull.size();
-    for (const Vec2& p : all) {
-      while (hull.size() > begin + 1 && !turns_left(p)) hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(all.begin(), all.end());
-  }
-  return hull;
+  return convex_hull(std::move(all));
 }
 
 /// Metres between the nearest two upright planes that hold the body: rotating calipers (Shamos,

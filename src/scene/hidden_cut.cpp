@@ -14,6 +14,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "hidden_parts.h"
 
@@ -93,8 +94,6 @@ class Flat {
   Vec3 normal_;
   Eigen::Index axis_ = 0;
 };
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// What of a segment lies in a counter-clockwise triangle.
 std::optional<Segment> clip(const Segment& s, const std::array<Vec2, 3>& triangle) {

@@ -1,0 +1,62 @@
+// Based on: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
+// Information Processing Letters 9(5), 1979.
+// Differs: the same under both rules.
+// Notation: none.
+#include "flat.h"
+
+#include <algorithm>
+
+namespace colod {
+
+std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::vector<Vec2> hull;
+  if (points.empty()) return hull;
+  for (const int pass : {0, 1}) {  // the lower side, then the upper one
+    const std::size_t start = hull.size() + 1;
+    for (const Vec2& p : points) {
+      while (hull.size() > start &&
+             !(cross(hull.back() - hull[hull.size() - 2], p - hull.back()) > 0))
+        hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    if (pass == 0) std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+bool covers(const Outline& outline, const Vec3& normal, const Vec3& x) {
+  const std::vector<Vec3>& v = outline.vertices;
+  return std::any_of(outline.triangles.begin(), outline.triangles.end(), [&](const Face& f) {
+    for (int c = 0; c < 3; ++c)
+      if ((v[f[(c + 1) % 3]] - v[f[c]]).cross(x - v[f[c]]).dot(normal) < 0) return false;
+    return true;
+  });
+}
+
+Mesh outline_soup(const std::vector<Plane>& planes, std::vector<int>* plane_of_triangle) {
+  Mesh soup;
+  if (plane_of_triangle) plane_of_triangle->clear();
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const Outline& outline = planes[p].outline;
+    const int first = static_cast<int>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), outline.vertices.begin(), outline.vertices.end());
+    for (const Face& f : outline.triangles) {
+      soup.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+      if (plane_of_triangle) plane_of_triangle->push_back(static_cast<int>(p));
+    }
+  }
+  return soup;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+}  // namespace colod
