@@ -84,12 +84,10 @@ const char* describe(StandIn reason) {
       return "came out richer than the next finer one and takes its mesh";
     case StandIn::kInvented:
       return "came out with most of its roofs and many walls far from the source: it stands "
-             "elsewhere, "
-             "so that the next finer layer's mesh stands in";
+             "elsewhere, so that the next finer layer's mesh stands in";
     case StandIn::kVolume:
       return "came out with another volume than the finer ones, by more than a fifth: it lost a "
-             "part "
-             "of the building or invented one, so that the next finer layer's mesh stands in";
+             "part of the building or invented one, so that the next finer layer's mesh stands in";
   }
   return "";
 }

@@ -120,9 +120,10 @@ void drop_geometry(Building& building);
 class Depot {
  public:
   virtual ~Depot() = default;
-  /// After `planes` to `coanalysis`: may take them away. Name, path, segments and counts stay.
+  /// After the segments and their descriptors: may take them away. Name, path, segments and counts
+  /// stay.
   virtual void put(Building&) {}
-  /// Before room `partition`: brings them back.
+  /// Before `mesh_building`: brings them back.
   virtual void get(Building&) {}
   /// After the measures: they are needed no more.
   virtual void drop(Building&) {}
