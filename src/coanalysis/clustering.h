@@ -17,8 +17,7 @@ enum class Layering {
 };  ///< size: one threshold per layer on the longest extent, the baseline to beat
 
 struct ClusteringOptions {
-  bool is_paper = false;  ///< all segments into the spectrum, ordered by mean volume; robust: flat
-                          ///< ones aside, median extent
+  bool is_paper = false;  ///< clusters of the spectrum are layers, ordered by mean volume
   Layering layering = Layering::kSpectral;
   int layers = 3;  ///< l_n
   double eta = 4.0;
@@ -29,6 +28,7 @@ struct ClusteringOptions {
 
 struct Clustering {
   std::vector<int> layer;  ///< per given segment, 1..l_n − 1 (0 everywhere when l_n is 1)
+  std::vector<int> kind;   ///< per given segment: its kind, the largest first; empty: none was told
   std::vector<double> eigenvalues;  ///< the smallest of L_norm, rising, at most 10
   std::vector<std::string> warnings;
 };

@@ -4,7 +4,8 @@
 // dis = η ‖h − h'‖₂ + ‖v − v'‖₁ / (‖v‖₁ + ‖v'‖₁) is not a norm of differences, so a kd-tree cannot
 // search it. Near each other, the second term is tanh(½ |ln ‖v‖₁ − ln ‖v'‖₁|) for equal proportions
 // and half the difference of the proportions for equal sums. The tree therefore holds η times the
-// histogram's first principal components, ½ ln ‖v‖₁ and the halved proportions of v; it returns
+// histogram's first principal components, ½ ln ‖v‖₁ and the halved proportions of v, and for kinds
+// the context and which element it is; it returns
 // three times as many as are wanted, which are sorted by dis itself.
 //
 // Differs: the paper compares all pairs.
@@ -23,9 +24,10 @@ namespace colod {
 namespace {
 
 constexpr int kComponents = 6;  // of the histogram
-constexpr int kDimensions = kComponents + 4;
+constexpr int kDimensions = kComponents + 8;
 constexpr int kCandidates = 3;  // times what is wanted
 constexpr int kLeaf = 20;
+constexpr double kApart = 3;        // between elements of different kinds
 constexpr double kLeastSum = 1e-6;  // m², for logarithms
 
 using Histogram = Eigen::Matrix<double, 64, 1>;
@@ -40,14 +42,14 @@ Histogram histogram_of(const Descriptor& d) {
 }
 
 // The directions in which the histograms differ most, a column each.
-Eigen::Matrix<double, 64, kComponents> principal_components(const std::vector<Descriptor>& segments,
-                                                            const std::vector<int>& ids) {
+Eigen::Matrix<double, 64, kComponents> principal_components(
+    const std::vector<Descriptor>& segments) {
   Histogram mean = Histogram::Zero();
-  for (const int s : ids) mean += histogram_of(segments[s]);
-  mean /= static_cast<double>(ids.size());
+  for (const Descriptor& d : segments) mean += histogram_of(d);
+  mean /= static_cast<double>(segments.size());
   Eigen::Matrix<double, 64, 64> covariance = Eigen::Matrix<double, 64, 64>::Zero();
-  for (const int s : ids) {
-    const Histogram h = histogram_of(segments[s]) - mean;
+  for (const Descriptor& d : segments) {
+    const Histogram h = histogram_of(d) - mean;
     covariance.selfadjointView<Eigen::Lower>().rankUpdate(h);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 64, 64>> solver(covariance);
@@ -65,21 +67,25 @@ struct Cloud {
   }
 };
 
-Cloud embed(const std::vector<Descriptor>& segments, const std::vector<int>& ids, double eta) {
-  const auto components = principal_components(segments, ids);
+Cloud embed(const std::vector<Descriptor>& segments, double eta, bool is_by_kind) {
+  const auto components = principal_components(segments);
   Cloud cloud;
-  cloud.points.resize(ids.size());
+  cloud.points.resize(segments.size());
   parallel_for(
-      ids.size(),
+      segments.size(),
       [&](std::size_t i) {
-        const Descriptor& d = segments[ids[i]];
+        const Descriptor& d = segments[i];
         const Eigen::Matrix<double, kComponents, 1> shape =
             components.transpose() * histogram_of(d);
         Point& p = cloud.points[i];
-        for (int c = 0; c < kComponents; ++c) p[c] = eta * shape[c];
+        for (int c = 0; c < kComponents; ++c) p[c] = eta * kDensity * shape[c];
         const double sum = std::max(kLeastSum, sane(d.eigenvalues.lpNorm<1>()));
         p[kComponents] = 0.5 * std::log(sum);
-        for (int a = 0; a < 3; ++a) p[kComponents + 1 + a] = 0.5 * sane(d.eigenvalues[a]) / sum;
+        for (int a = 0; a < 3; ++a) {
+          p[kComponents + 1 + a] = 0.5 * sane(d.eigenvalues[a]) / sum;
+          p[kComponents + 4 + a] = is_by_kind ? sane(d.context[a]) : 0;
+        }
+        p[kComponents + 7] = is_by_kind && has_kind(d) ? kApart * static_cast<int>(d.form) : 0;
       },
       64);
   return cloud;
@@ -88,18 +94,18 @@ Cloud embed(const std::vector<Descriptor>& segments, const std::vector<int>& ids
 }  // namespace
 
 std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descriptor>& segments,
-                                                       const std::vector<int>& ids, int count,
-                                                       double eta) {
-  std::vector<std::vector<Neighbour>> result(ids.size());
-  if (ids.size() < 2) return result;
-  const Cloud cloud = embed(segments, ids, eta);
+                                                       int count, double eta,
+                                                       Similarity similarity) {
+  std::vector<std::vector<Neighbour>> result(segments.size());
+  if (segments.size() < 2) return result;
+  const Cloud cloud = embed(segments, eta, similarity == kind_similarity);
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>,
                                                    Cloud, kDimensions, std::uint32_t>;
   Tree tree(kDimensions, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf));
   tree.buildIndex();
-  const std::size_t wanted = std::min<std::size_t>(ids.size(), kCandidates * count + 1);
+  const std::size_t wanted = std::min<std::size_t>(segments.size(), kCandidates * count + 1);
   parallel_for(
-      ids.size(),
+      segments.size(),
       [&](std::size_t i) {
         std::vector<std::uint32_t> found(wanted);
         std::vector<double> squared(wanted);
@@ -107,8 +113,8 @@ std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descrip
         std::vector<Neighbour>& near = result[i];
         for (const std::uint32_t j : found) {
           if (j == i) continue;
-          const int a = ids[std::min<std::size_t>(i, j)], b = ids[std::max<std::size_t>(i, j)];
-          const double s = segment_similarity(segments[a], segments[b], eta);
+          const auto [a, b] = std::minmax<std::size_t>(i, j);
+          const double s = similarity(segments[a], segments[b], eta);
           if (std::isfinite(s)) near.push_back({static_cast<int>(j), s});
         }
         std::sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {

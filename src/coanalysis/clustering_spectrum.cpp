@@ -34,30 +34,26 @@ constexpr double kConverged = 1e-11;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-double similarity(const std::vector<Descriptor>& segments, int a, int b, double eta) {
-  const double s = segment_similarity(segments[std::min(a, b)], segments[std::max(a, b)], eta);
-  return std::isfinite(s) ? s : 0;
-}
-
-Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
-                               double eta) {
-  const auto n = static_cast<Eigen::Index>(ids.size());
+Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, double eta,
+                               Similarity similarity) {
+  const auto n = static_cast<Eigen::Index>(segments.size());
   Eigen::MatrixXd a(n, n);
-  parallel_for(ids.size(), [&](std::size_t j) {
-    for (std::size_t i = 0; i < ids.size(); ++i)
-      a(i, j) = i == j ? 1 : similarity(segments, ids[i], ids[j], eta);
+  parallel_for(segments.size(), [&](std::size_t j) {
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const double s = similarity(segments[std::min(i, j)], segments[std::max(i, j)], eta);
+      a(i, j) = i == j ? 1 : std::isfinite(s) ? s : 0;
+    }
   });
   const Eigen::VectorXd scale = a.colwise().sum().cwiseSqrt().cwiseInverse();  // sums are ≥ 1
   return scale.asDiagonal() * a * scale.asDiagonal();
 }
 
 // An edge counts when either end names the other.
-Sparse sparse_affinity(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
-                       double eta) {
-  const std::size_t n = ids.size();
+Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Similarity similarity) {
+  const std::size_t n = segments.size();
   std::vector<Eigen::Triplet<double>> entries;
   {
-    const auto nearest = nearest_neighbours(segments, ids, kNeighbours, eta);
+    const auto nearest = nearest_neighbours(segments, kNeighbours, eta, similarity);
     entries.reserve(n * (2 * kNeighbours + 1));
     for (std::size_t i = 0; i < n; ++i) {
       entries.emplace_back(i, i, 1.0);
@@ -79,7 +75,7 @@ Sparse sparse_affinity(const std::vector<Descriptor>& segments, const std::vecto
 Spectrum spectrum_of(const Eigen::VectorXd& falling, const Eigen::MatrixXd& vectors, int k) {
   Spectrum spectrum;
   if (falling.size() < k) return spectrum;
-  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(falling.size(), kReported); ++i)
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(falling.size(), std::max(k, kReported)); ++i)
     spectrum.values.push_back(std::max(0.0, 1 - falling[i]));
   spectrum.vectors = vectors.leftCols(k);
   for (int c = 0; c < k; ++c) {
@@ -108,14 +104,14 @@ Spectrum lanczos(Product product, Eigen::Index n, int k, std::uint64_t seed) {
 
 }  // namespace
 
-Spectrum smallest_spectrum(const std::vector<Descriptor>& segments, const std::vector<int>& ids,
-                           int k, double eta, std::uint64_t seed) {
-  const auto n = static_cast<Eigen::Index>(ids.size());
+Spectrum smallest_spectrum(const std::vector<Descriptor>& segments, int k, double eta,
+                           Similarity similarity, std::uint64_t seed) {
+  const auto n = static_cast<Eigen::Index>(segments.size());
   if (n > kDense && n > 4 * k) {
-    const Sparse a = sparse_affinity(segments, ids, eta);
+    const Sparse a = sparse_affinity(segments, eta, similarity);
     return lanczos(Spectra::SparseSymMatProd<double>(a), n, k, seed);
   }
-  const Eigen::MatrixXd a = dense_affinity(segments, ids, eta);
+  const Eigen::MatrixXd a = dense_affinity(segments, eta, similarity);
   if (n > kAllEigenvalues && n > 4 * k)
     return lanczos(Spectra::DenseSymMatProd<double>(a), n, k, seed);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);

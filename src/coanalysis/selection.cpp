@@ -3,14 +3,11 @@
 // Differs. --rules paper: to the letter, f_co(M_i) = Σ_{s∈I_i−M_i} Σ_{j≠i} Sim_co(s, I_j − M_j) and
 // f_r > 0.8. With many buildings f_co then outweighs f_r, the bound decides, and 6 of 15 scanned
 // houses lost their main roof (measured in November 2026).
-// --rules robust: f_co(M_i) = Σ_{s∈I_i−M_i} area(s)/area(I_i) · mean_{j≠i} Sim_co(s, I_j − M_j), of
-// the size of f_s; f_r > 0.95; and after the optimum every segment that encloses at least 2 % of
-// the valid voxels joins layer 0 (`added`), while lesser ones leave it, smallest first, as long as
-// f_r > 0.95 holds (a spire's voxels count four times: the main shape of a church has it;
-// `removed`; objective, bound and gap speak of the optimum before). Without the
-// latter a building alone, whose f_co is 0, keeps whatever has little area for its voxels: 12 of 12
-// segments of an arch, 16 of 36 of a photogrammetric house (measured in November 2026); and in a
-// street what is like nothing else stays.
+// --rules robust: the three terms have one unit, shares of a building: f_r those of its volume and
+// outline (segments/fidelity.cpp), f_s those of its area, f_co(M_i) = Σ_{s∈I_i−M_i}
+// area(s)/area(I_i) · mean_{j≠i} Sim_co(s, I_j − M_j). A segment goes when the share of the
+// building that goes with it is less than (β + λ · its mean similarity) times its share of the
+// area; f_r > 0.95.
 // Both: Sim_co to an empty set is 0. Block ascent from several starts, each block's program solved,
 // and a Lagrangian upper bound; where they do not meet and at most `exact_segments` segments are to
 // be decided, lp_solve gets the whole program.
@@ -45,10 +42,6 @@ constexpr int kMaxSteps = 400;        // of the bound
 constexpr double kStepWork = 4e9;     // items × prototypes looked at by all steps together
 constexpr double kStartWork = 5e6;    // by all starts together, but 3 there are
 constexpr double kPolishWork = 2e8;   // nodes × items × prototypes in a round
-constexpr double kDoubt = 2;          // times the least share, and a part of it: near it
-constexpr double kSpireWeight = 4;    // times its voxels: a spire has few for what it shows
-constexpr double kAlike = 0.75;       // similarity of segments that decide together
-constexpr std::ptrdiff_t kMostAlike = 50;
 constexpr int kPolishRounds = 8, kMaxBlockNodes = 400, kMinBlockNodes = 20;
 
 std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& buildings) {
@@ -130,111 +123,6 @@ Solved solve(const Model& model, const SelectionOptions& options, Selection& res
   return ascent;
 }
 
-// Per segment the share of its building's voxels that it encloses; empty when none is enclosed.
-std::vector<double> voxel_shares(const SelectionBuilding& building) {
-  std::vector<double> share(building.segments.size(), 0.0);
-  double sum = 0;
-  for (const Coverage& c : building.coverage) {
-    if (!(c.share > 0) || !std::isfinite(c.share)) continue;
-    sum += c.share;
-    for (const int s : c.segments) share[s] += c.share;
-  }
-  if (!(sum > 0)) return {};
-  for (double& s : share) s /= sum;
-  return share;
-}
-
-// Main segments, those of at least the share `least`, join; how many.
-int add_main(const std::vector<double>& share, double least, std::vector<char>& is_layer0) {
-  int added = 0;
-  for (std::size_t s = 0; s < share.size(); ++s)
-    if (!is_layer0[s] && share[s] >= least) is_layer0[s] = 1, ++added;
-  return added;
-}
-
-// Others leave, smallest first (of equals the last), while the block's bound on f_r holds and one
-// segment stays; how many.
-int remove_small(const Block& block, const Model& model, const std::vector<double>& share,
-                 double least, std::vector<char>& is_layer0) {
-  std::vector<int> order;  // items: what is none has to stay
-  Choice x(model.items.size(), 0);
-  auto kept = std::count(is_layer0.begin(), is_layer0.end(), 1);
-  for (int k = block.first; k < block.first + block.count; ++k) {
-    const int s = model.items[k].segment;
-    x[k] = !is_layer0[s];
-    if (is_layer0[s] && share[s] < least) order.push_back(k);
-  }
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    const double share_a = share[model.items[a].segment], share_b = share[model.items[b].segment];
-    return share_a != share_b ? share_a < share_b : a > b;
-  });
-  int removed = 0;
-  for (const int k : order) {
-    if (kept == 1) break;
-    x[k] = 1;
-    if (block_loss(block, x) <= block.capacity)
-      is_layer0[model.items[k].segment] = 0, ++removed, --kept;
-    else
-      x[k] = 0;
-  }
-  return removed;
-}
-
-// A segment whose share is near the threshold.
-struct Doubtful {
-  const Descriptor* segment;
-  int building;
-  double share;
-  double* verdict;  ///< the share that counts
-};
-
-// Segments near the threshold that are alike in several buildings decide together, by the median of
-// their shares: a stairhead with 2.1 % of one block's voxels and another with 1.9 % are one kind.
-void decide_together(const std::vector<SelectionBuilding>& buildings, double least, double eta,
-                     std::vector<std::vector<double>>& shares) {
-  std::vector<Doubtful> doubtful;
-  for (std::size_t i = 0; i < buildings.size(); ++i)
-    for (std::size_t s = 0; s < shares[i].size(); ++s)
-      if (shares[i][s] >= least / kDoubt && shares[i][s] <= least * kDoubt)
-        doubtful.push_back(
-            {&buildings[i].segments[s], static_cast<int>(i), shares[i][s], &shares[i][s]});
-  std::stable_sort(doubtful.begin(), doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
-    return a.segment->extent < b.segment->extent;
-  });
-  const auto n = static_cast<std::ptrdiff_t>(doubtful.size());
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    std::vector<double> alike = {doubtful[i].share};
-    for (const int step : {-1, 1})
-      for (std::ptrdiff_t j = i + step; j >= 0 && j < n && std::abs(j - i) <= kMostAlike; j += step)
-        if (doubtful[j].building != doubtful[i].building &&
-            segment_similarity(*doubtful[i].segment, *doubtful[j].segment, eta) >= kAlike)
-          alike.push_back(doubtful[j].share);
-    std::sort(alike.begin(), alike.end());
-    *doubtful[i].verdict = 0.5 * (alike[(alike.size() - 1) / 2] + alike[alike.size() / 2]);
-  }
-}
-
-// Layer 0 by shares of voxels, after the optimum. One block a building that has segments, in order.
-void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
-          const SelectionOptions& options, Selection& result) {
-  const double least = options.main_share;
-  std::vector<std::vector<double>> shares;
-  for (const SelectionBuilding& b : buildings) shares.push_back(voxel_shares(b));
-  decide_together(buildings, least, options.eta, shares);
-  for (std::size_t i = 0; i < buildings.size(); ++i)
-    for (std::size_t s = 0; s < shares[i].size(); ++s)
-      if (buildings[i].segments[s].form == Form::kSpire) shares[i][s] *= kSpireWeight;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < buildings.size(); ++i) {
-    if (buildings[i].segments.empty()) continue;
-    const Block& block = model.blocks[next++];
-    const std::vector<double>& share = shares[i];
-    if (share.empty()) continue;
-    result.added += add_main(share, least, result.is_layer0[i]);
-    result.removed += remove_small(block, model, share, least, result.is_layer0[i]);
-  }
-}
-
 double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -275,7 +163,6 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                   100 * result.gap);
     result.warnings.push_back(text);
   }
-  if (!options.is_paper && options.main_share > 0) tidy(buildings, model, options, result);
   result.seconds = since(start);
   return result;
 }

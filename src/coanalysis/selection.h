@@ -24,12 +24,8 @@ struct SelectionOptions {
   std::uint64_t seed = 1;
   int exact_segments = 40;  ///< up to this many segments that layer 0 could do without, in all, the
                             ///< whole program goes to lp_solve
-  double main_share = 0.02;  ///< robust: after the optimum segments that enclose at least this
-                             ///< share of their building's voxels (a spire: a quarter of it) join
-                             ///< layer 0, and lesser ones leave it while f_r > 0.95 holds; 0: the
-                             ///< optimum as it is
-  double gap = 0.001;  ///< good enough: stop as soon as the gap is proven to be no more; up to
-                       ///< exact_segments the optimum is proven whatever this is
+  double gap = 0.001;       ///< good enough: stop as soon as the gap is proven to be no more; up to
+                            ///< exact_segments the optimum is proven whatever this is
   double gap_warning = 0.05;      ///< a greater gap is warned of
   int exact_similarities = 1500;  ///< up to this many segments that layer 0 could do without, all
                                   ///< pairs are compared; beyond, segments and prototypes
@@ -46,9 +42,8 @@ enum class SelectionStatus {
 const char* to_string(SelectionStatus status);
 
 struct Selection {
-  std::vector<std::vector<char>> is_layer0;  ///< [building][segment], after adding and removing
-  int added = 0, removed = 0;  ///< segments, after the optimum (SelectionOptions::main_share)
-  int starts = 0;              ///< of the ascent
+  std::vector<std::vector<char>> is_layer0;  ///< [building][segment]
+  int starts = 0;                            ///< of the ascent
   bool is_exact = true;  ///< all pairs compared: `objective` is E_0 and not a lower bound on it
   double objective = 0;  ///< E_0 of the result of the optimisation, or proven to be no more
   double bound = 0;      ///< proven upper bound on E_0

@@ -35,8 +35,9 @@ std::map<std::vector<int>, double> merged_coverage(const SelectionBuilding& buil
     set.erase(std::unique(set.begin(), set.end()), set.end());
     assert(set.empty() ||
            (set.front() >= 0 && set.back() < static_cast<int>(building.segments.size())));
-    if (set.empty() || sane(c.share) == 0) continue;
-    terms[set] += c.share, sum += c.share;
+    if (sane(c.share) == 0) continue;
+    sum += c.share;
+    if (!set.empty()) terms[set] += c.share;
   }
   if (sum == 0) {
     std::vector<int> all(building.segments.size());

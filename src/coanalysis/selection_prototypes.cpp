@@ -17,12 +17,16 @@
 // never more than the true E_0 of a choice, and the bound on the program with weights multiplied by
 // it never less than the true optimum. The difference is part of the reported gap.
 //
+// Elements of one kind are at distance 0 from each other; ρ holds where k and q are both of the
+// kind, or neither of any, so that others are kUnlike.
+//
 // Differs: the paper compares all pairs.
 //
 // Notation: k, t items, q prototype, h histogram, v eigenvalues, ρ as above.
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "core/parallel.h"
 #include "selection_model.h"
@@ -34,14 +38,15 @@ constexpr int kSample = 4096;  // items from which prototypes are found
 constexpr int kLloydRounds = 4;
 constexpr double kLeastEigenvalue = 1e-9;  // m², for logarithms
 constexpr double kFloatRounding = 1e-6;
+constexpr double kUnlike = 50;  // ρ of what a prototype must not stand for: it weighs nothing
 
 // ρ of the proof. Not finite where a descriptor is not.
 double spread_exponent(const Descriptor& k, const Descriptor& q, double eta) {
-  double shape = 0;
-  for (std::size_t b = 0; b < k.d2.size(); ++b) shape += (k.d2[b] - q.d2[b]) * (k.d2[b] - q.d2[b]);
+  if (is_one_kind(k, q)) return 0;
+  if (has_kind(k) || has_kind(q)) return kUnlike;
   const double sum = k.eigenvalues.lpNorm<1>() + q.eigenvalues.lpNorm<1>();
   const double b = sum > 0 ? (k.eigenvalues - q.eigenvalues).lpNorm<1>() / sum : 0;
-  return eta * std::sqrt(shape) + 4 * b / (1 + 3 * b);
+  return eta * shape_distance(k, q) + 4 * b / (1 + 3 * b);
 }
 
 bool is_finite(const Descriptor& d) {
@@ -93,6 +98,7 @@ std::vector<Descriptor> first_centres(const std::vector<const Descriptor*>& samp
 // Mean histogram, geometric mean of the eigenvalues.
 Descriptor mean_of(const std::vector<const Descriptor*>& members) {
   Descriptor mean;
+  mean.form = members.front()->form;
   Vec3 logs = Vec3::Zero();
   for (const Descriptor* d : members) {
     for (std::size_t b = 0; b < mean.d2.size(); ++b) mean.d2[b] += d->d2[b];
@@ -109,6 +115,9 @@ std::vector<Descriptor> find_centres(const std::vector<const Descriptor*>& items
   std::vector<const Descriptor*> sample;
   const std::size_t wanted = std::min<std::size_t>(items.size(), kSample);
   for (std::size_t i = 0; i < wanted; ++i) sample.push_back(items[i * items.size() / wanted]);
+  std::set<Form> kinds;  // none without a prototype
+  for (const Descriptor* d : items)
+    if (has_kind(*d) && kinds.insert(d->form).second) sample.push_back(d);
   std::vector<Descriptor> centres = first_centres(sample, eta, most);
   for (int round = 0; round < kLloydRounds; ++round) {
     std::vector<Nearest> nearest(sample.size());

@@ -5,13 +5,14 @@
 // Differs: the paper leaves the histogram's range, bins and norm open, and they silently set η.
 // Here, for both rules: 64 equal bins over the *unsquared* distance 0..6 in whitened units (the
 // mean squared distance of two points is 6 by construction, so 2.4 is typical and what lies beyond
-// 6 joins the last bin, at most 1–2 %), sum 1. A range by the largest distance follows outliers.
-// With sum 1 and η = 4 the shape term of two segments is about 0.05–0.3 (measured in November
-// 2026), scale_d 0.2–1. Whitening has a floor of max((5 cm)², (2 %)² of the largest eigenvalue):
-// without it a flat segment's noise would become its shape. The covariance is exact, not sampled.
-// Points are stratified over the area (one in each of `pairs` equal parts, at random within it) and
-// two such sets are paired by a random permutation: each pair is distributed as independent
-// points, with less noise than independent draws.
+// 6 joins the last bin, at most 1–2 %). A range by the largest distance follows outliers. ‖·‖₂ is
+// that of densities, ∫(h − h')² over the distance, which does not hang on the number of bins: with
+// η = 4 the shape term of two segments is about 0.2–1, as scale_d is (measured in November 2026),
+// so that 4 balances both as the paper says. Whitening has a floor of max((5 cm)², (2 %)² of the
+// largest eigenvalue): without it a flat segment's noise would become its shape. The covariance is
+// exact, not sampled. Points are stratified over the area (one in each of `pairs` equal parts, at
+// random within it) and two such sets are paired by a random permutation: each pair is distributed
+// as independent points, with less noise than independent draws.
 //
 // Notation: s segment, Σ covariance of its surface, λ eigenvalues of Σ, W whitening, v_e = λ.
 #include "similarity.h"
@@ -126,6 +127,20 @@ std::array<double, 64> pair_histogram(const std::vector<Triangle>& surface, doub
   return share;
 }
 
+/// See Descriptor::context.
+Vec3 context(const Planes& planes, const Segment& segment) {
+  double up = 0, area = 0, low = planes.box.max.z(), high = planes.box.min.z();
+  for (const int p : segment.planes) {
+    const Plane& plane = planes.planes[p];
+    up += plane.area * std::max(0.0, plane.normal.z()), area += plane.area;
+    for (const Vec3& v : plane.outline.vertices)
+      low = std::min(low, v.z()), high = std::max(high, v.z());
+  }
+  const double height = std::max(kThin, planes.box.size().z());
+  return {area > 0 ? up / area : 0, (low - planes.box.min.z()) / height,
+          (high - planes.box.min.z()) / height};
+}
+
 Descriptor describe(const Planes& planes, const Segment& segment, std::uint64_t seed, int pairs) {
   Descriptor d;
   d.form = segment.form;
@@ -137,6 +152,7 @@ Descriptor describe(const Planes& planes, const Segment& segment, std::uint64_t 
   d.d2[0] = 1;  // no surface: every pair of its points coincides
   if (surface.empty() || !std::isfinite(area)) return d;
 
+  d.context = context(planes, segment);
   const Vec3 origin = surface.front().a;  // whitened coordinates stay small
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance(surface, area));
   if (!solver.eigenvalues().allFinite()) return d;
@@ -167,19 +183,40 @@ std::vector<Descriptor> describe_segments(const Planes& planes, const Segments& 
   return result;
 }
 
-double segment_distance(const Descriptor& a, const Descriptor& b, double eta) {
-  double shape = 0;
+bool has_kind(const Descriptor& d) { return d.form != Form::kPlain && d.form != Form::kSpire; }
+
+double shape_distance(const Descriptor& a, const Descriptor& b) {
+  double sum = 0;
   for (std::size_t i = 0; i < a.d2.size(); ++i) {
     const double difference = a.d2[i] - b.d2[i];
-    shape += difference * difference;
+    sum += difference * difference;
   }
+  return kDensity * std::sqrt(sum);
+}
+
+bool is_one_kind(const Descriptor& a, const Descriptor& b) {
+  return has_kind(a) && a.form == b.form;
+}
+
+double segment_distance(const Descriptor& a, const Descriptor& b, double eta) {
+  if (is_one_kind(a, b)) return 0;
   const double sum = a.eigenvalues.lpNorm<1>() + b.eigenvalues.lpNorm<1>();
   const double scale = sum > 0 ? (a.eigenvalues - b.eigenvalues).lpNorm<1>() / sum : 0;
-  return eta * std::sqrt(shape) + scale;
+  return eta * shape_distance(a, b) + scale;
 }
 
 double segment_similarity(const Descriptor& a, const Descriptor& b, double eta) {
   return std::exp(-segment_distance(a, b, eta));
+}
+
+double kind_distance(const Descriptor& a, const Descriptor& b, double eta) {
+  if (is_one_kind(a, b)) return 0;
+  return segment_distance(a, b, eta) + (a.context - b.context).norm() +
+         (has_kind(a) && has_kind(b) ? 1 : 0);
+}
+
+double kind_similarity(const Descriptor& a, const Descriptor& b, double eta) {
+  return std::exp(-kind_distance(a, b, eta));
 }
 
 }  // namespace colod

@@ -19,9 +19,14 @@ struct Descriptor {
   double volume = 0;                ///< m³
   double extent = 0;                ///< metres: standard deviation along the longest axis
   Form form = Form::kPlain;         ///< of the segment
+  Vec3 context = Vec3::Zero();  ///< share of its area that looks up, where it begins and ends in
+                                ///< the building's height: each 0..1
   bool is_flat =
       false;  ///< one plane, or less than 5 cm thick: whitening would make noise its shape
 };
+
+/// From a share of d2 to its density over the whitened distance, as a root: √(64 bins / 6).
+constexpr double kDensity = 3.2659863237109041;
 
 struct DescriptorOptions {
   int pairs = 100000;  ///< point pairs; below 50,000 the layers depend on the seed
@@ -44,10 +49,26 @@ struct Prior {
   std::vector<PriorBuilding> buildings;
 };
 
-/// dis(s, s') = eta ‖d2 − d2'‖₂ + ‖v_e − v_e'‖₁ / (‖v_e‖₁ + ‖v_e'‖₁). Symmetric, ≥ 0, 0 for equal
-/// descriptors.
+/// dis(s, s') = eta ‖d2 − d2'‖₂ + ‖v_e − v_e'‖₁ / (‖v_e‖₁ + ‖v_e'‖₁), d2 as densities over the
+/// whitened distance; robust rules: 0 between elements of one kind, whatever their size. Symmetric,
+/// ≥ 0, 0 for equal descriptors.
 double segment_distance(const Descriptor& a, const Descriptor& b, double eta);
 /// Sim = exp(−dis), in (0, 1].
 double segment_similarity(const Descriptor& a, const Descriptor& b, double eta);
+
+/// The first term without eta.
+double shape_distance(const Descriptor& a, const Descriptor& b);
+
+/// Whether it is an element whose kind is known: a balcony, a loggia, a dormer, a bay, a recess.
+bool has_kind(const Descriptor& d);
+/// Whether both are elements of one kind: a balcony of 2.4 m and one of 3.5 m.
+bool is_one_kind(const Descriptor& a, const Descriptor& b);
+/// What parts kinds: dis, how the contexts differ, and 1 between elements of different kinds; 0
+/// between elements of one kind, whatever their size.
+double kind_distance(const Descriptor& a, const Descriptor& b, double eta);
+double kind_similarity(const Descriptor& a, const Descriptor& b, double eta);
+
+/// Either of both.
+using Similarity = double (*)(const Descriptor&, const Descriptor&, double eta);
 
 }  // namespace colod

@@ -145,6 +145,7 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
           {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
   Segments result = finish_segments(planes, std::move(draft));
   mark_spires(planes, result.segments);
+  result.coverage = fidelity_coverage(grid, result);
   return result;
 }
 

@@ -36,6 +36,10 @@ Segments finish_segments(const Planes& planes, SegmentDraft draft);
 void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
                      SegmentDraft& draft);
 
+/// What of the fidelity (eq. 3) is lost when segments are dropped together; shares sum to 1, the
+/// empty set's cannot be lost.
+std::vector<Coverage> fidelity_coverage(const HitGrid& grid, const Segments& segments);
+
 /// Robust rules on hits as cast with all planes active and none reversed.
 Segments robust_segments(const Planes& planes, const HitGrid& grid, const SegmentOptions& options);
 

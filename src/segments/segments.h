@@ -31,10 +31,11 @@ struct Segment {
   double area = 0;    ///< m² of its planes
 };
 
-/// Voxels enclosed by exactly this set of segments.
+/// What a building loses when all of these segments are dropped, and not before.
 struct Coverage {
-  std::vector<int> segments;  ///< rising, not empty
-  double share = 0;           ///< of all enclosed voxels; the shares of a building sum to 1
+  std::vector<int> segments;  ///< rising; empty: what nobody can lose
+  double share = 0;  ///< of the building's volume and outline (paper: of its enclosed voxels);
+                     ///< those of a building sum to 1
 };
 
 struct Segments {

@@ -109,6 +109,7 @@ Descriptor read_descriptor(Statement& s) {
   d.extent = s.real();
   d.is_flat = s.integer() != 0;
   d.eigenvalues = s.value<Vec3>();
+  d.context = s.value<Vec3>();
   d.d2 = s.value<std::array<double, 64>>();
   return d;
 }
@@ -173,7 +174,7 @@ void Store::Impl::put_planes(const Building& b) const {
 }
 
 void Store::Impl::put_segments(const Building& b) const {
-  Statement s = write("INSERT INTO segment VALUES(?,?,NULL,?,?,?,?,?,?,?,?,?)");
+  Statement s = write("INSERT INTO segment VALUES(?,?,NULL,?,?,?,?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < b.segments.segments.size(); ++i) {
     const Segment& g = b.segments.segments[i];
     const Descriptor& d = b.descriptors[i];
@@ -187,6 +188,7 @@ void Store::Impl::put_segments(const Building& b) const {
         .bind(d.extent)
         .bind(static_cast<int>(d.is_flat))
         .bind(d.eigenvalues)
+        .bind(d.context)
         .bind_bytes(d.d2.data(), sizeof d.d2)
         .run();
   }
@@ -306,7 +308,8 @@ void Store::Impl::get_planes(Building& b) const {
 
 void Store::Impl::get_segments(Building& b) const {
   Statement s = read(
-      "SELECT is_alcove, voxels, form, volume, area, extent, is_flat, eigenvalues, d2, layer"
+      "SELECT is_alcove, voxels, form, volume, area, extent, is_flat, eigenvalues, context, d2, "
+      "layer"
       " FROM segment WHERE building = ?1 ORDER BY id");
   s.bind(b.source.name);
   while (s.step()) {

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 7;  // PRAGMA user_version
+constexpr int kFormat = 8;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -31,7 +31,7 @@ CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
   PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE segment(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   layer INTEGER, is_alcove INTEGER, form INTEGER, voxels INTEGER, volume REAL, area REAL, extent REAL, is_flat INTEGER,
-  eigenvalues BLOB, d2 BLOB, PRIMARY KEY(building, id)) WITHOUT ROWID;
+  eigenvalues BLOB, context BLOB, d2 BLOB, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
@@ -270,8 +270,9 @@ Prior Store::prior() const {
   Prior prior;
   prior.layers = options().layers;
   Statement s = impl_->read(
-      "SELECT b.name, s.layer, s.form, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, s.d2"
-      " FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, b.name, s.id");
+      "SELECT b.name, s.layer, s.form, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, "
+      "s.context, s.d2 FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, "
+      "b.name, s.id");
   std::string last;
   while (s.step()) {
     const std::string name = s.text();
