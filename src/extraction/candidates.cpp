@@ -134,7 +134,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   }
   std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
   if (!options.is_paper) {
-    find_hollows(planes, layer_planes, plan);
+    find_elements(planes, layer_planes, plan);
     keep_bounds(layer_planes, plan, leaders);
   }
   for (std::size_t i = 0; i < layer_planes.size(); ++i) {
@@ -146,7 +146,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
                            leaders[i]});
     plan.input.push_back(p);
   }
-  for (const Hollow& hollow : plan.hollows) add_rims(hollow, plan);
+  for (const Element& element : plan.elements) add_rims(element, plan);
   if (!options.is_paper) add_walls(planes, layer_planes, rays, plan);
   return plan;
 }

@@ -21,7 +21,7 @@ struct CuttingPlan {
     double offset;
   };
   std::vector<Limit> limits;  ///< cells with their centroid beyond one of them are outside
-  std::vector<Hollow> hollows;
+  std::vector<Element> elements;
 };
 
 CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& layer_planes,
@@ -40,12 +40,12 @@ std::vector<Vec3> grown_hull(const Plane& plane, const std::vector<Vec3>& points
 void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
                CuttingPlan& plan);
 
-/// The layer's trays, niches and shafts; the planes that end them lead themselves
-/// (hollows.cpp).
-void find_hollows(const Planes& planes, std::vector<int> layer_planes, CuttingPlan& plan);
+/// The layer's balconies, loggias and chimneys; the planes that end them lead themselves
+/// (elements.cpp).
+void find_elements(const Planes& planes, std::vector<int> layer_planes, CuttingPlan& plan);
 void keep_bounds(const std::vector<int>& layer_planes, const CuttingPlan& plan,
                  std::vector<int>& leaders);
-/// The faces that a hollow lacks.
-void add_rims(const Hollow& hollow, CuttingPlan& plan);
+/// The faces that a element lacks.
+void add_rims(const Element& element, CuttingPlan& plan);
 
 }  // namespace colod

@@ -86,7 +86,7 @@ std::vector<char> label(const CuttingPlan& plan, const Planes& planes, Sight& si
   attempt.evidence = gather_evidence(partition, sight, {.nr = options.nr});
   const Evidence& evidence = attempt.evidence;
   measure_coverage(partition, planes, plan.input, attempt.evidence);
-  ask_hollows(partition, plan.hollows, attempt.evidence);
+  ask_elements(partition, plan.elements, attempt.evidence);
   double best = -1;
   for (const double escape : kEscapes) {
     std::vector<char> trial = cut_cells(partition, evidence, is_forced,
@@ -144,10 +144,10 @@ std::vector<double> explained_areas(const Attempt& attempt, std::size_t planes) 
 }
 
 /// Per input plane whether the surface is worth its cut: one facet that is no sliver, and enough of
-/// the plane's facets under its outline; or it bounds a hollow, or is one of
+/// the plane's facets under its outline; or it bounds a element, or is one of
 /// many sides that only together are round.
 std::vector<char> worthwhile_planes(const Attempt& attempt, const Planes& planes,
-                                    const std::vector<Hollow>& hollows,
+                                    const std::vector<Element>& elements,
                                     const std::vector<double>& explained) {
   std::vector<char> is_wide(explained.size(), 0);
   std::vector<double> total(explained.size(), 0);
@@ -159,8 +159,8 @@ std::vector<char> worthwhile_planes(const Attempt& attempt, const Planes& planes
   }
   for (std::size_t p = 0; p < is_wide.size(); ++p)
     is_wide[p] = is_wide[p] && explained[p] >= kLeastCovered * total[p];
-  for (const Hollow& hollow : hollows)
-    for (const int p : hollow.bounds) is_wide[p] = 1;
+  for (const Element& element : elements)
+    for (const int p : element.bounds) is_wide[p] = 1;
   for (std::size_t p = 0; p < is_wide.size(); ++p)
     is_wide[p] |= planes.has_side(static_cast<int>(p));
   return is_wide;
@@ -169,7 +169,7 @@ std::vector<char> worthwhile_planes(const Attempt& attempt, const Planes& planes
 /// The plan without the planes that the surface does not need.
 CuttingPlan leaner(const CuttingPlan& plan, const Attempt& attempt,
                    const std::vector<char>& is_worthwhile) {
-  CuttingPlan lean{{}, {}, plan.box, plan.limits, plan.hollows};
+  CuttingPlan lean{{}, {}, plan.box, plan.limits, plan.elements};
   for (std::size_t i = 0; i < plan.planes.size(); ++i) {
     const int plane = attempt.partition.cuts[i].plane;
     const int source = plane < 0 ? -1 : attempt.partition.planes[plane].source_plane;
@@ -186,7 +186,7 @@ void prune(CuttingPlan& plan, const Planes& planes, Sight& sight, const Extracti
            Attempt& best) {
   for (int round = 0; round < kPruningRounds && !is_spent(sight); ++round) {
     const std::vector<double> before = explained_areas(best, planes.planes.size());
-    const std::vector<char> is_worthwhile = worthwhile_planes(best, planes, plan.hollows, before);
+    const std::vector<char> is_worthwhile = worthwhile_planes(best, planes, plan.elements, before);
     CuttingPlan lean = leaner(plan, best, is_worthwhile);
     if (lean.planes.size() == plan.planes.size()) return;
     Attempt next = try_plan(lean, planes, sight, options);

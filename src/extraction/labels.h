@@ -19,7 +19,7 @@ struct Evidence {
   std::vector<double>
       coverage;  ///< per piece, 0..1: share under outlines that look along its plane
   std::vector<double> reversed;  ///< per piece, 0..1: under outlines that look against it
-  std::vector<char> is_told;     ///< per cell: it lies in a hollow, and has to stay what it is
+  std::vector<char> is_told;     ///< per cell: it lies in a element, and has to stay what it is
 };
 
 struct VoteOptions {
@@ -35,10 +35,10 @@ Evidence gather_evidence(const Partition& partition, Sight& sight, const VoteOpt
 void measure_coverage(const Partition& partition, const Planes& planes,
                       const std::vector<int>& input, Evidence& evidence);
 
-/// What rays cannot say: air in trays and niches is outside, a shaft is solid, thin walls are left
-/// to their outlines.
-void ask_hollows(const Partition& partition, const std::vector<Hollow>& hollows,
-                 Evidence& evidence);
+/// What rays cannot say: air in balconies and loggias is outside, a chimney is solid, thin walls
+/// are left to their outlines.
+void ask_elements(const Partition& partition, const std::vector<Element>& elements,
+                  Evidence& evidence);
 
 /// More than half of the rays; no smoothing.
 std::vector<char> threshold_cells(const Evidence& evidence, const std::vector<char>& is_forced_out);

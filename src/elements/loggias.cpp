@@ -1,22 +1,23 @@
 // Based on: elements.cpp.
 // Differs: –
 // Notation: –
+#include "loggias.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "parts.h"
-
-namespace colod::hollows {
+namespace colod::elements {
 namespace {
 
-constexpr double kLeastDepth = 0.5, kMostDepth = 4;  // metres of a niche
+constexpr double kLeastDepth = 0.5, kMostDepth = 4;  // metres of a loggia
 constexpr double kLeastWidth = 0.8;
-constexpr double kAbove = 0.5;  // metres above a niche: where a room must be
+constexpr double kAbove = 0.5;  // metres above a loggia: where a room must be
 
 /// Between two walls that face each other.
 struct Gap {
   const Panel *left, *right;
-  Vec3 across, forward;  ///< from left to right; out of the niche
+  Vec3 across, forward;  ///< from left to right; out of the loggia
   Range width, depth, height;
 };
 
@@ -54,7 +55,8 @@ double back_share(const std::vector<Panel>& panels, const Gap& gap, const Vec3& 
   return sum;
 }
 
-/// A wall larger than a niche's cheeks that looks the same way as the niche and lies in its mouth.
+/// A wall larger than a loggia's cheeks that looks the same way as the loggia and lies in its
+/// mouth.
 bool is_behind_facade(const std::vector<Panel>& panels, const Gap& gap, const Vec3& forward,
                       double mouth, double least_area) {
   for (const Panel& p : panels)
@@ -65,8 +67,8 @@ bool is_behind_facade(const std::vector<Panel>& panels, const Gap& gap, const Ve
   return false;
 }
 
-/// What planes form a niche.
-struct Niche {
+/// What planes form a loggia.
+struct Loggia {
   Vec3 forward;
   double most_area;  ///< of a plane of it
   Range depth;       ///< along forward
@@ -97,48 +99,50 @@ const Panel* level_of(const std::vector<Panel>& panels, const Gap& gap, double m
 
 /// Air in it, and, without a ceiling that is seen, a room above: else walls of noise, or a gap
 /// between what stands on a roof.
-bool is_hollow(const std::vector<Panel>& panels, const Gap& gap, const Niche& niche) {
+bool is_open(const std::vector<Panel>& panels, const Gap& gap, const Loggia& loggia) {
   const Vec3 middle = 0.5 * (gap.width.low + gap.width.high) * gap.across +
-                      0.5 * (niche.depth.low + niche.depth.high) * niche.forward +
+                      0.5 * (loggia.depth.low + loggia.depth.high) * loggia.forward +
                       0.5 * (gap.height.low + gap.height.high) * Vec3::UnitZ();
   if (is_room(panels, middle)) return false;
   const double above = 0.5 * gap.height.length() + kAbove;
-  return niche.ceiling || is_room(panels, middle + above * Vec3::UnitZ());
+  return loggia.ceiling || is_room(panels, middle + above * Vec3::UnitZ());
 }
 
 /// `sign` 1: that opens along gap.forward, −1: against it.
-std::optional<Niche> find_niche(const std::vector<Panel>& panels, const Gap& gap, double sign,
-                                double largest_area) {
-  Niche niche{sign * gap.forward, std::min(30.0, 0.3 * largest_area),
-              sign > 0 ? gap.depth : Range{-gap.depth.high, -gap.depth.low}, gap.height, 0};
+std::optional<Loggia> find_loggia(const std::vector<Panel>& panels, const Gap& gap, double sign,
+                                  double largest_area) {
+  Loggia loggia{sign * gap.forward, std::min(30.0, 0.3 * largest_area),
+                sign > 0 ? gap.depth : Range{-gap.depth.high, -gap.depth.low}, gap.height, 0};
   std::vector<const Panel*> backs;
-  niche.closed = back_share(panels, gap, niche.forward, niche.depth.low, niche.most_area, backs);
-  niche.ceiling = level_of(panels, gap, niche.most_area, &Panel::is_ceiling, gap.height.high);
-  if (niche.closed < 0.5 && !niche.ceiling) return std::nullopt;
+  loggia.closed =
+      back_share(panels, gap, loggia.forward, loggia.depth.low, loggia.most_area, backs);
+  loggia.ceiling = level_of(panels, gap, loggia.most_area, &Panel::is_ceiling, gap.height.high);
+  if (loggia.closed < 0.5 && !loggia.ceiling) return std::nullopt;
   const double cheeks = std::max(gap.left->plane->area, gap.right->plane->area);
-  if (!is_behind_facade(panels, gap, niche.forward, niche.depth.high, std::max(2 * cheeks, 10.0)) ||
-      !is_hollow(panels, gap, niche))
+  if (!is_behind_facade(panels, gap, loggia.forward, loggia.depth.high,
+                        std::max(2 * cheeks, 10.0)) ||
+      !is_open(panels, gap, loggia))
     return std::nullopt;
-  niche.floor = level_of(panels, gap, niche.most_area, &Panel::is_floor, gap.height.low);
-  if (niche.ceiling) niche.height.high = niche.ceiling->plane->centroid.z();
-  if (niche.floor) niche.height.low = niche.floor->plane->centroid.z();
+  loggia.floor = level_of(panels, gap, loggia.most_area, &Panel::is_floor, gap.height.low);
+  if (loggia.ceiling) loggia.height.high = loggia.ceiling->plane->centroid.z();
+  if (loggia.floor) loggia.height.low = loggia.floor->plane->centroid.z();
   const auto by_area = [](auto* x, auto* y) { return x->plane->area < y->plane->area; };
-  if (!backs.empty()) niche.back = *std::max_element(backs.begin(), backs.end(), by_area);
-  return niche;
+  if (!backs.empty()) loggia.back = *std::max_element(backs.begin(), backs.end(), by_area);
+  return loggia;
 }
 
 /// The faces that no plane shows.
-std::vector<Hollow::Rim> rims_of(const Gap& gap, const Niche& niche) {
-  std::vector<Hollow::Rim> rims;
-  const Range depth = {niche.behind(), niche.depth.high};
-  if (!niche.ceiling)
-    rims.push_back(level_rim(-1, niche.height.high, gap.across, gap.width, niche.forward, depth));
-  if (!niche.floor)
-    rims.push_back(level_rim(1, niche.height.low, gap.across, gap.width, niche.forward, depth));
-  if (niche.closed < 0.5) {
+std::vector<Element::Rim> rims_of(const Gap& gap, const Loggia& loggia) {
+  std::vector<Element::Rim> rims;
+  const Range depth = {loggia.behind(), loggia.depth.high};
+  if (!loggia.ceiling)
+    rims.push_back(level_rim(-1, loggia.height.high, gap.across, gap.width, loggia.forward, depth));
+  if (!loggia.floor)
+    rims.push_back(level_rim(1, loggia.height.low, gap.across, gap.width, loggia.forward, depth));
+  if (loggia.closed < 0.5) {
     const Range across =
-        niche.forward.dot(gap.forward) > 0 ? Range{-gap.width.high, -gap.width.low} : gap.width;
-    rims.push_back(upright_rim(niche.forward, niche.behind(), across, niche.height));
+        loggia.forward.dot(gap.forward) > 0 ? Range{-gap.width.high, -gap.width.low} : gap.width;
+    rims.push_back(upright_rim(loggia.forward, loggia.behind(), across, loggia.height));
   }
   return rims;
 }
@@ -158,33 +162,42 @@ std::vector<int> planes_in(const std::vector<Panel>& panels, Region region, doub
   return planes;
 }
 
-Hollow describe(const std::vector<Panel>& panels, const Gap& gap, const Niche& niche) {
-  Hollow hollow{.kind = Hollow::Kind::kNiche, .planes = {gap.left->id, gap.right->id}};
-  hollow.air = {{-gap.left->plane->normal, -gap.left->plane->offset},
-                {-gap.right->plane->normal, -gap.right->plane->offset},
-                {-niche.forward, -niche.behind() + 0.02},
-                {niche.forward, niche.depth.high + 0.15},
-                {Vec3::UnitZ(), niche.height.high + 0.02},
-                {-Vec3::UnitZ(), -niche.height.low + 0.02}};
-  hollow.rims = rims_of(gap, niche);
-  if (niche.ceiling) hollow.planes.push_back(niche.ceiling->id);
-  if (niche.floor) hollow.planes.push_back(niche.floor->id);
-  hollow.bounds = hollow.planes;
-  if (niche.back) hollow.bounds.push_back(niche.back->id);
-  const std::vector<int> inside = planes_in(panels, hollow.air, niche.most_area);
-  hollow.planes.insert(hollow.planes.end(), inside.begin(), inside.end());
-  return hollow;
+Element describe(const std::vector<Panel>& panels, const Gap& gap, const Loggia& loggia) {
+  Element element{.kind = ElementKind::kLoggia, .planes = {gap.left->id, gap.right->id}};
+  element.air = {{-gap.left->plane->normal, -gap.left->plane->offset},
+                 {-gap.right->plane->normal, -gap.right->plane->offset},
+                 {-loggia.forward, -loggia.behind() + 0.02},
+                 {loggia.forward, loggia.depth.high + 0.15},
+                 {Vec3::UnitZ(), loggia.height.high + 0.02},
+                 {-Vec3::UnitZ(), -loggia.height.low + 0.02}};
+  element.rims = rims_of(gap, loggia);
+  if (loggia.ceiling) element.planes.push_back(loggia.ceiling->id);
+  if (loggia.floor) element.planes.push_back(loggia.floor->id);
+  element.bounds = element.planes;
+  if (loggia.back) element.bounds.push_back(loggia.back->id);
+  const std::vector<int> inside = planes_in(panels, element.air, loggia.most_area);
+  element.planes.insert(element.planes.end(), inside.begin(), inside.end());
+  return element;
 }
-}  // namespace
 
-std::optional<Hollow> niche_between(const std::vector<Panel>& panels, const Panel& a,
-                                    const Panel& b, double largest_area) {
+std::optional<Element> loggia_between(const std::vector<Panel>& panels, const Panel& a,
+                                      const Panel& b, double largest_area) {
   const std::optional<Gap> gap = gap_between(a, b);
   if (!gap) return std::nullopt;
   for (const double sign : {1.0, -1.0})
-    if (const auto niche = find_niche(panels, *gap, sign, largest_area))
-      return describe(panels, *gap, *niche);
+    if (const auto loggia = find_loggia(panels, *gap, sign, largest_area))
+      return describe(panels, *gap, *loggia);
   return std::nullopt;
 }
 
-}  // namespace colod::hollows
+}  // namespace
+
+std::vector<Element> find_loggias(const std::vector<Panel>& panels) {
+  std::vector<Element> found;
+  const double largest = largest_area(panels);
+  for (const auto& [a, b] : near_pairs(small_walls(panels), kMostWidth))
+    if (auto loggia = loggia_between(panels, *a, *b, largest)) found.push_back(std::move(*loggia));
+  return found;
+}
+
+}  // namespace colod::elements

@@ -1,21 +1,24 @@
-// Inside hollows: what its files share. Not for other rooms.
+// Inside room `elements`: the planes as detectors see them, and what all of these ask of them.
 #pragma once
 
+#include <algorithm>
 #include <limits>
-#include <optional>
+#include <utility>
+#include <vector>
 
 #include "elements.h"
 
-namespace colod::hollows {
+namespace colod::elements {
 
-constexpr double kUpright = 0.35;   // |cosine| to the vertical of a wall's normal
-constexpr double kLevel = 0.95;     // of a floor's or a ceiling's
-constexpr double kAlike = 0.9;      // cosine of directions that count as the same
-constexpr double kMostArea = 25;    // m² of a plane of such a part
-constexpr double kReach = 0.35;     // metres between planes that meet
-constexpr double kMostWidth = 15;   // metres of a niche
-constexpr double kMostShaft = 2.5;  // metres between a shaft's walls
-constexpr double kTouch = 0.2;      // metres between walls that share an edge
+constexpr double kUpright = 0.35;     // |cosine| to the vertical of a wall's normal
+constexpr double kLevel = 0.95;       // of a floor's or a ceiling's
+constexpr double kAlike = 0.9;        // cosine of directions that count as the same
+constexpr double kMostArea = 25;      // m² of a plane of such a part
+constexpr double kReach = 0.35;       // metres between planes that meet
+constexpr double kMostCheek = 12;     // m² of a wall beside a loggia, a chimney or a bay
+constexpr double kMostWidth = 15;     // metres of a loggia
+constexpr double kMostChimney = 2.5;  // metres between a chimney's walls
+constexpr double kTouch = 0.2;        // metres between walls that share an edge
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -46,7 +49,16 @@ struct Panel {
   Range height() const { return {box.min.z(), box.max.z()}; }
 };
 
+/// In the order of `among`, without those that have no outline.
 std::vector<Panel> panels_of(const Planes& planes, const std::vector<int>& among);
+double largest_area(const std::vector<Panel>& panels);
+/// Walls of at least 0.3 m², in order.
+std::vector<const Panel*> walls_up_to(const std::vector<Panel>& panels, double most_area);
+/// Walls that are small beside the building's largest plane, in order.
+std::vector<const Panel*> small_walls(const std::vector<Panel>& panels);
+/// Each pair whose boxes are within `reach` metres of each other, in order.
+std::vector<std::pair<const Panel*, const Panel*>> near_pairs(
+    const std::vector<const Panel*>& walls, double reach);
 /// What of a panel lies near a box: walls of different parts are one plane where they are flush.
 Panel part_near(Panel panel, const Box& around, double reach);
 
@@ -64,23 +76,10 @@ bool meets_back(const std::vector<Panel>& panels, const Vec3& from, const Vec3& 
 std::vector<Vec3> rectangle(const Vec3& normal, double offset, const Vec3& a, const Range& ra,
                             const Vec3& b, const Range& rb);
 /// `sign` 1: looks up, −1: down.
-Hollow::Rim level_rim(double sign, double z, const Vec3& a, const Range& ra, const Vec3& b,
-                      const Range& rb, int like = -1);
+Element::Rim level_rim(double sign, double z, const Vec3& a, const Range& ra, const Vec3& b,
+                       const Range& rb, int like = -1);
 /// `across` is along beside(out).
-Hollow::Rim upright_rim(const Vec3& out, double offset, const Range& across, const Range& height,
-                        int like = -1);
+Element::Rim upright_rim(const Vec3& out, double offset, const Range& across, const Range& height,
+                         int like = -1);
 
-/// Each over a floor or its underside, a pair of walls, a roof's small plane, before a pane;
-/// nothing where they form none.
-std::optional<Hollow> tray_on(const std::vector<Panel>& panels, const Panel& floor);
-std::optional<Hollow> niche_between(const std::vector<Panel>& panels, const Panel& a,
-                                    const Panel& b, double largest_area);
-std::optional<Hollow> shaft_between(const std::vector<Panel>& panels, const Panel& a,
-                                    const Panel& b);
-std::optional<Hollow> shaft_at_corner(const std::vector<Panel>& panels, const Panel& a,
-                                      const Panel& b);
-std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel& a, const Panel& b);
-std::vector<Hollow> dormers_on(const std::vector<Panel>& panels);
-std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall);
-
-}  // namespace colod::hollows
+}  // namespace colod::elements

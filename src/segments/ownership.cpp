@@ -1,9 +1,9 @@
 // Based on: elements/elements.h.
 // Differs: robust rules only. Rays give a balcony's floor or one of its walls to the body, a
-//   loggia's ceiling and cheeks to the body or to several small segments. The planes of a tray, a
-//   niche or a recess become one segment: the one that has most of them and little else, or a new
-//   one. A chimney of which a scan shows a corner only may share a detail's segment with something
-//   larger; its planes then become a segment, too.
+//   loggia's ceiling and cheeks to the body or to several small segments. The planes of a balcony,
+//   a loggia or a recess become one segment: the one that has most of them and little else, or a
+//   new one. A chimney of which a scan shows a corner only may share a detail's segment with
+//   something larger; its planes then become a segment, too.
 // Notation: –
 #include <algorithm>
 
@@ -13,11 +13,11 @@
 namespace colod {
 namespace {
 
-constexpr double kMostOthers = 2.0;   // of the hollow's area: planes of others in its segment
-constexpr double kShaftReach = 0.25;  // metres around a shaft: planes there are its own
-constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps shafts: two
+constexpr double kMostOthers = 2.0;     // of the element's area: planes of others in its segment
+constexpr double kChimneyReach = 0.25;  // metres around a chimney: planes there are its own
+constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps chimneys: two
                                 // windows' reveals look like one
-constexpr double kSameHollow = 0.5;  // of its area that an earlier one has taken: it is that one
+constexpr double kSameElement = 0.5;  // of its area that an earlier one has taken: it is that one
 
 double area_of(const Planes& planes, const std::vector<int>& which) {
   double sum = 0;
@@ -31,15 +31,8 @@ std::int64_t voxels_in(const HitGrid& grid, const Region& air) {
   return count;
 }
 
-bool is_alcove(Hollow::Kind kind) {
-  return kind == Hollow::Kind::kNiche || kind == Hollow::Kind::kRecess;
-}
-
-Form form_of(Hollow::Kind kind) {
-  if (kind == Hollow::Kind::kTray) return Form::kTray;
-  if (kind == Hollow::Kind::kNiche) return Form::kNiche;
-  if (kind == Hollow::Kind::kRecess) return Form::kRecess;
-  return kind == Hollow::Kind::kBay ? Form::kBay : Form::kDormer;
+bool is_alcove(ElementKind kind) {
+  return kind == ElementKind::kLoggia || kind == ElementKind::kWindow;
 }
 
 std::vector<int> segments_by_plane(std::size_t planes, const SegmentDraft& draft) {
@@ -49,18 +42,18 @@ std::vector<int> segments_by_plane(std::size_t planes, const SegmentDraft& draft
   return of;
 }
 
-/// The segment that the hollow's planes go to, or −1: a new one. `taken` are those that earlier
-/// hollows took.
-int home_of(const Planes& planes, const SegmentDraft& draft, const Hollow& hollow,
+/// The segment that the element's planes go to, or −1: a new one. `taken` are those that earlier
+/// elements took.
+int home_of(const Planes& planes, const SegmentDraft& draft, const Element& element,
             const std::vector<int>& segment_of_plane, const std::vector<char>& is_taken,
             const std::vector<int>& free) {
-  const double area = area_of(planes, hollow.planes);
+  const double area = area_of(planes, element.planes);
   std::vector<double> share(draft.segments.size(), 0), free_share(draft.segments.size(), 0);
-  for (const int p : hollow.planes)
+  for (const int p : element.planes)
     if (const int s = segment_of_plane[p]; s >= 0)
       (is_taken[p] ? share : free_share)[s] += planes.planes[p].area;
   const auto most = std::max_element(share.begin(), share.end());
-  if (most != share.end() && *most >= kSameHollow * area)
+  if (most != share.end() && *most >= kSameElement * area)
     return static_cast<int>(most - share.begin());
   int best = -1;
   for (std::size_t s = 0; s < draft.segments.size(); ++s) {
@@ -73,35 +66,35 @@ int home_of(const Planes& planes, const SegmentDraft& draft, const Hollow& hollo
   return best;
 }
 
-bool may_own(const Planes& planes, const Hollow& hollow, double alcove_area) {
-  if (is_alcove(hollow.kind))
-    return std::all_of(hollow.planes.begin(), hollow.planes.end(),
+bool may_own(const Planes& planes, const Element& element, double alcove_area) {
+  if (is_alcove(element.kind))
+    return std::all_of(element.planes.begin(), element.planes.end(),
                        [&](int p) { return planes.planes[p].area < alcove_area; });
-  return hollow.kind != Hollow::Kind::kShaft;
+  return element.kind != ElementKind::kChimney;
 }
 
-/// A shaft whose walls lie in one segment that is mostly something else leaves it.
-void part_shaft(const Planes& planes, const HitGrid& grid, const Hollow& shaft,
-                const std::vector<char>& is_taken, SegmentDraft& draft) {
+/// A chimney whose walls lie in one segment that is mostly something else leaves it.
+void part_chimney(const Planes& planes, const HitGrid& grid, const Element& chimney,
+                  const std::vector<char>& is_taken, SegmentDraft& draft) {
   const std::vector<int> of = segments_by_plane(planes.planes.size(), draft);
-  const int home = of[shaft.planes.front()];
+  const int home = of[chimney.planes.front()];
   std::int64_t voxels = 0;
   for (const Segment& s : draft.segments) voxels += s.voxels;
   if (home < 0 || kMostShare * draft.segments[home].voxels > voxels ||
-      std::any_of(shaft.planes.begin(), shaft.planes.end(),
+      std::any_of(chimney.planes.begin(), chimney.planes.end(),
                   [&](int p) { return is_taken[p] || of[p] != home; }))
     return;
-  Region grown = shaft.solid;
-  for (HalfSpace& side : grown) side.offset += kShaftReach;
+  Region grown = chimney.solid;
+  for (HalfSpace& side : grown) side.offset += kChimneyReach;
   Segment own, rest = draft.segments[home];
   for (const int p : rest.planes)
     if (contains(grown, planes.planes[p].centroid) ||
-        std::find(shaft.planes.begin(), shaft.planes.end(), p) != shaft.planes.end())
+        std::find(chimney.planes.begin(), chimney.planes.end(), p) != chimney.planes.end())
       own.planes.push_back(p);
   std::erase_if(rest.planes,
                 [&](int p) { return std::binary_search(own.planes.begin(), own.planes.end(), p); });
   if (area_of(planes, rest.planes) <= area_of(planes, own.planes)) return;
-  own.voxels = std::min(rest.voxels, voxels_in(grid, shaft.solid));
+  own.voxels = std::min(rest.voxels, voxels_in(grid, chimney.solid));
   own.volume = static_cast<double>(own.voxels) * grid.voxel_volume();
   rest.voxels -= own.voxels, rest.volume -= own.volume;
   draft.segments[home] = std::move(rest);
@@ -110,31 +103,31 @@ void part_shaft(const Planes& planes, const HitGrid& grid, const Hollow& shaft,
 
 }  // namespace
 
-void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
-                     SegmentDraft& draft) {
+void give_to_elements(const Planes& planes, const HitGrid& grid, double alcove_area,
+                      SegmentDraft& draft) {
   std::vector<int> every(planes.planes.size());
   for (std::size_t p = 0; p < every.size(); ++p) every[p] = static_cast<int>(p);
   std::vector<char> is_taken(planes.planes.size(), 0);
-  const std::vector<Hollow> hollows = find_hollows(planes, every);
-  for (const Hollow& hollow : hollows) {
-    if (!may_own(planes, hollow, alcove_area)) continue;
+  const std::vector<Element> elements = find_elements(planes, every);
+  for (const Element& element : elements) {
+    if (!may_own(planes, element, alcove_area)) continue;
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
-    for (const int p : hollow.planes)
+    for (const int p : element.planes)
       if (!is_taken[p]) free.push_back(p);
     if (free.empty()) continue;
-    int home = home_of(planes, draft, hollow, of, is_taken, free);
+    int home = home_of(planes, draft, element, of, is_taken, free);
     if (home < 0) {
       home = static_cast<int>(draft.segments.size());
       draft.segments.emplace_back();
       draft.segments.back().voxels =
-          voxels_in(grid, hollow.air.empty() ? hollow.solid : hollow.air);
+          voxels_in(grid, element.air.empty() ? element.solid : element.air);
       draft.segments.back().volume =
           static_cast<double>(draft.segments.back().voxels) * grid.voxel_volume();
     }
     Segment& segment = draft.segments[home];
-    if (segment.form == Form::kPlain) {
-      segment.form = form_of(hollow.kind);
-      segment.is_alcove |= is_alcove(hollow.kind);
+    if (segment.kind == ElementKind::kPlain) {
+      segment.kind = element.kind;
+      segment.is_alcove |= is_alcove(element.kind);
     }
     for (const int p : free) {
       is_taken[p] = 1;
@@ -149,8 +142,9 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
         s.voxels = 0, s.volume = 0;
       }
   }
-  for (const Hollow& hollow : hollows)  // others may have taken a shaft's walls: a dormer's cheeks
-    if (hollow.kind == Hollow::Kind::kShaft) part_shaft(planes, grid, hollow, is_taken, draft);
+  for (const Element& element :
+       elements)  // others may have taken a chimney's walls: a dormer's cheeks
+    if (element.kind == ElementKind::kChimney) part_chimney(planes, grid, element, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
 }
 

@@ -5,12 +5,13 @@
 //   at its edges that look at its middle tell it. Arches fall to planes too small to be any: a face
 //   is added.
 // Notation: –
+#include "windows.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "parts.h"
-
-namespace colod::hollows {
+namespace colod::elements {
 namespace {
 
 constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
@@ -61,13 +62,13 @@ bool is_facade(const Panel& p, const Pane& pane) {
 
 /// Where no reveal looks down from the pane's upper edge, or inward from one of its sides, a face
 /// is added there, from the pane to the facade.
-std::vector<Hollow::Rim> rims_of(const Pane& pane, const std::vector<const Panel*>& reveals,
-                                 const Range& depth) {
+std::vector<Element::Rim> rims_of(const Pane& pane, const std::vector<const Panel*>& reveals,
+                                  const Range& depth) {
   const auto is_missing = [&](const Vec3& inward) {
     return std::none_of(reveals.begin(), reveals.end(),
                         [&](const Panel* p) { return p->plane->normal.dot(inward) > kFacing; });
   };
-  std::vector<Hollow::Rim> rims;
+  std::vector<Element::Rim> rims;
   if (is_missing(-Vec3::UnitZ()))
     rims.push_back(level_rim(-1, pane.height.high, pane.across, pane.width, pane.panel.out, depth));
   for (const double side : {-1.0, 1.0}) {
@@ -80,32 +81,39 @@ std::vector<Hollow::Rim> rims_of(const Pane& pane, const std::vector<const Panel
   return rims;
 }
 
-}  // namespace
-
-std::optional<Hollow> recess_before(const std::vector<Panel>& panels, const Panel& wall) {
+std::optional<Element> window_before(const std::vector<Panel>& panels, const Panel& wall) {
   if (!wall.is_wall || wall.plane->area < kLeastPane || wall.plane->area > kMostPane)
     return std::nullopt;
   const Pane pane{wall};
-  Hollow recess{.kind = Hollow::Kind::kRecess, .planes = {wall.id}};
+  Element window{.kind = ElementKind::kWindow, .planes = {wall.id}};
   std::vector<const Panel*> reveals;
   Range depth{pane.back, pane.back};
   for (const Panel& p : panels) {
     if (!is_reveal(p, pane)) continue;
-    reveals.push_back(&p), recess.planes.push_back(p.id);
+    reveals.push_back(&p), window.planes.push_back(p.id);
     depth.high = std::max(depth.high, p.along(wall.out).high);
   }
   if (reveals.size() < kReveals || std::none_of(panels.begin(), panels.end(),
                                                 [&](const Panel& p) { return is_facade(p, pane); }))
     return std::nullopt;
-  recess.air = {{-wall.out, -pane.back},
+  window.air = {{-wall.out, -pane.back},
                 {wall.out, depth.high},
                 {-pane.across, -pane.width.low},
                 {pane.across, pane.width.high},
                 {-Vec3::UnitZ(), -pane.height.low},
                 {Vec3::UnitZ(), pane.height.high}};
-  recess.rims = rims_of(pane, reveals, depth);
-  recess.is_whole = true;
-  return recess;
+  window.rims = rims_of(pane, reveals, depth);
+  window.is_whole = true;
+  return window;
 }
 
-}  // namespace colod::hollows
+}  // namespace
+
+std::vector<Element> find_windows(const std::vector<Panel>& panels) {
+  std::vector<Element> found;
+  for (const Panel& p : panels)
+    if (auto window = window_before(panels, p)) found.push_back(std::move(*window));
+  return found;
+}
+
+}  // namespace colod::elements
