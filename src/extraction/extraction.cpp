@@ -267,7 +267,7 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   if (attempt.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
   if (!options.is_paper) prune(plan, planes, sight, options, attempt);
-  const bool is_exact = !options.is_paper && planes.distance <= kLeastDistance;
+  const bool is_exact = !options.is_paper && planes.is_clean();
   if (options.tolerance > 0 && !is_spent(sight)) simplify(planes, options, is_exact, attempt);
   if (options.is_finest && is_exact)
     keep_sheets(std::move(plan), planes, layer_planes, sight, options, attempt);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "candidates.h"
+#include "core/flat.h"
 
 namespace colod {
 namespace {
@@ -29,26 +30,6 @@ struct Border {
   Vec2 middle() const { return 0.5 * (a + b); }
 };
 
-/// Positions of the ring that stay when nothing may move by more than kSimplify.
-void simplify(const std::vector<Vec3>& points, std::size_t first, std::size_t last,
-              std::vector<std::size_t>& kept) {
-  const Vec2 a = points[first].head<2>(), d = points[last].head<2>() - a;
-  const double length = d.norm();
-  double worst = kSimplify;
-  std::size_t split = first;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const Vec2 e = points[i].head<2>() - a;
-    const double away = length > 0 ? std::abs(d.x() * e.y() - d.y() * e.x()) / length : e.norm();
-    if (away > worst) worst = away, split = i;
-  }
-  if (split != first) {
-    simplify(points, first, split, kept);
-    simplify(points, split, last, kept);
-  } else {
-    kept.push_back(last);
-  }
-}
-
 void add_borders(const Plane& roof, std::vector<Border>& borders) {
   for (const std::vector<int>& ring : roof.outline.rings) {
     if (ring.size() < 3) continue;
@@ -60,8 +41,15 @@ void add_borders(const Plane& roof, std::vector<Border>& borders) {
     });
     std::rotate(points.begin(), far, points.end());
     points.push_back(points[0]);
-    std::vector<std::size_t> kept = {0};
-    simplify(points, 0, points.size() - 1, kept);
+    const auto distance = [&](int i, int from, int to) {
+      const Vec2 d = (points[to] - points[from]).head<2>(),
+                 e = (points[i] - points[from]).head<2>();
+      const double length = d.norm();
+      return length > 0 ? std::abs(cross(d, e)) / length : e.norm();
+    };
+    const int last = static_cast<int>(points.size()) - 1;
+    std::vector<int> kept = corners_between(0, last, kSimplify, distance);
+    kept.insert(kept.begin(), 0), kept.push_back(last);
     for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
       const Vec3 &p = points[kept[i]], &q = points[kept[i + 1]];
       const double length = (q - p).head<2>().norm();

@@ -67,7 +67,7 @@ void add_layer_planes(const Building& b, int k, const Options& o, std::vector<in
 /// Metres: what is no detail on layer k. An exact model of few planes has none to give away.
 double tolerance(const Building& b, int k, const Options& o) {
   if (is_paper(o)) return 0;
-  const bool is_plain = b.planes.distance <= kLeastDistance && b.planes.planes.size() <= kFewPlanes;
+  const bool is_plain = b.planes.is_clean() && b.planes.planes.size() <= kFewPlanes;
   const double least = kLeastTolerance * b.planes.box.diagonal();
   if (is_plain) return std::min(least, b.planes.distance);
   const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;

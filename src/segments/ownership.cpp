@@ -5,10 +5,11 @@
 //   new one. A chimney of which a scan shows a corner only may share a detail's segment with
 //   something larger; its planes then become a segment, too.
 // Notation: –
+#include "ownership.h"
+
 #include <algorithm>
 
 #include "elements/elements.h"
-#include "rules.h"
 
 namespace colod {
 namespace {

@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "assignment.h"
+#include "ownership.h"
 #include "rules.h"
 
 namespace colod {

@@ -252,6 +252,7 @@ void Store::Impl::get_building(Building& b) const {
   check_place({&b.frame.origin, 1}, path);
   b.frame.yaw = s.real();
   b.planes.distance = s.real();
+  b.planes.surface = surface_at(b.planes.distance);
   b.planes.total_area = s.real();
   if (const auto box = s.array<double>(); box.size() == 6)  // infinite where there is no plane
     b.planes.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};

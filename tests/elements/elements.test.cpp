@@ -4,7 +4,7 @@
 
 #include "elements_helpers.h"
 #include "extraction/extraction.h"
-#include "segments/rules.h"
+#include "segments/ownership.h"
 #include "segments/segments.h"
 
 using namespace colod;
@@ -43,7 +43,7 @@ TEST_CASE("a plain house has no element, nor has one with a solid box on it") {
   CHECK(elements_of(join(plain_house(), box_mesh({2, 2, 7}, {3, 2.6, 8.5}))).empty());
 }
 
-TEST_CASE("a balcony is a balcony of four planes with air in it") {
+TEST_CASE("a balcony is found with its four planes and the air in it") {
   const auto found = elements_of(balcony_house());
   REQUIRE(found.size() == 1);
   CHECK(found[0].kind == ElementKind::kBalcony);
@@ -70,7 +70,7 @@ TEST_CASE("a balcony needs its floor and a corner of walls, whatever way it look
   CHECK(elements_of(turned).size() == 1);
 }
 
-TEST_CASE("a balcony seen from below only is a balcony, its floor a slab above the underside") {
+TEST_CASE("a balcony seen from below only is found, its floor a slab above the underside") {
   Mesh turned = balcony_from_below();
   for (Vec3& v : turned.vertices)
     v = Vec3(0.8 * v.x() - 0.6 * v.y(), 0.6 * v.x() + 0.8 * v.y(), v.z());
@@ -113,7 +113,7 @@ TEST_CASE("a floor that is seen goes before the underside") {
   CHECK(contains(found[0].solid, {4.5, -0.6, 2.99}));
 }
 
-TEST_CASE("a loggia is a loggia, the space between two bays is none") {
+TEST_CASE("a loggia is found, the space between two bays is none") {
   const auto found = elements_of(loggia_house());
   REQUIRE(found.size() == 1);
   CHECK(found[0].kind == ElementKind::kLoggia);
@@ -125,7 +125,7 @@ TEST_CASE("a loggia is a loggia, the space between two bays is none") {
   for (const Element& h : elements_of(bays)) CHECK(h.kind == ElementKind::kBay);
 }
 
-TEST_CASE("a chimney without its top is a chimney") {
+TEST_CASE("a chimney without its top is found") {
   const auto found = elements_of(chimney_house());
   REQUIRE_FALSE(found.empty());
   for (const Element& h : found) CHECK(h.kind == ElementKind::kChimney);
@@ -145,7 +145,7 @@ TEST_CASE("a chimney may lack one side; a bay or a dormer has a room behind its 
   for (const Element& h : elements_of(bay)) CHECK(h.kind == ElementKind::kBay);
 }
 
-TEST_CASE("a window's pane and reveals are a recess, with two reveals at least") {
+TEST_CASE("a window is found by its pane and reveals, two of them at least") {
   const auto found = elements_of(window_house());
   REQUIRE(found.size() == 1);
   CHECK(found[0].kind == ElementKind::kWindow);
@@ -184,7 +184,7 @@ TEST_CASE("a dormer is told by a small roof that stands out of a steep one") {
   CHECK_FALSE(contains(found[0].solid, {5, 2, 5.5}));
 }
 
-TEST_CASE("a dormer's window is a recess in it, even one larger than the rest of the front") {
+TEST_CASE("a dormer's window is found in it, even one larger than the rest of the front") {
   const auto found = elements_of(dormer_window_house());
   REQUIRE(found.size() == 2);
   CHECK(found[0].kind == ElementKind::kDormer);
@@ -193,7 +193,7 @@ TEST_CASE("a dormer's window is a recess in it, even one larger than the rest of
         Approx(signed_volume(mesh_of(dormer_house()).mesh()) - 1.7 * 1.1 * 0.15).margin(0.01));
 }
 
-TEST_CASE("what is larger than any window is no recess") {
+TEST_CASE("what is larger than any window is none") {
   Mesh house = window_house();  // three and a half times as wide and high: 4.2 × 4.9
   for (Vec3& v : house.vertices) v = {3.5 * v.x(), v.y(), 3.5 * v.z()};
   CHECK(elements_of(house).empty());

@@ -663,7 +663,7 @@ TEST_CASE("steps, sheets that touch nothing and noise are no thin bodies") {
   expect_solid(extract(join(house, sheet_mesh({3, -2.5, 3}, {2, 0, 0}, {0, 1.5, 0})), options).mesh,
                240);
   Planes planes = planes_of_mesh(join(house, sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0})));
-  planes.distance = 0.1;  // found in noise
+  planes.surface = Planes::Surface::kNoisy;
   Sight sight(planes);
   expect_solid(extract_layer(planes, all_planes(planes), sight, options).mesh, 240);
 }

@@ -1,15 +1,16 @@
-// What the files about round shapes share. Not for other rooms.
+// Inside room `rounds`: the sides of a shape whose axis and columns are known.
 #pragma once
 
 #include <numbers>
 #include <vector>
 
-#include "rounds.h"
+#include "core/geometry.h"
+#include "shape.h"
 
 namespace colod::rounds {
 
 constexpr double kMostStep = 31 * std::numbers::pi / 180;  ///< twelve sides and more are round
-constexpr double kExact = 0.003;  ///< metres that a side's corners may be off its plane
+constexpr double kOffPlane = 0.003;  ///< metres that a side's corners may be off its plane
 
 /// The faces of a mesh with their planes.
 struct Facets {
