@@ -4,10 +4,11 @@
 // with no roof beyond it and no wall of the layer under it becomes a vertical candidate plane,
 // which the min-cut may use or leave.
 // Notation: the outer side of a border is the side away from its roof.
+#include "walls.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "candidates.h"
 #include "core/flat.h"
 
 namespace colod {
@@ -146,10 +147,13 @@ CutPlane cut_under(const Border& border, const Wall& wall, const Box& box) {
 
 }  // namespace
 
-void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
-               CuttingPlan& plan) {
+std::vector<CutPlane> walls_under_borders(const Planes& planes,
+                                          const std::vector<int>& layer_planes,
+                                          const RayScene& rays, const Box& box,
+                                          const std::vector<CuttingPlan::Limit>& limits) {
+  std::vector<CutPlane> cuts;
   std::vector<Wall> walls;
-  for (const CuttingPlan::Limit& side : plan.limits)
+  for (const CuttingPlan::Limit& side : limits)
     if (side.normal.head<2>().norm() > 0.99)
       walls.push_back({side.normal.head<2>().normalized(), side.offset});
   const std::size_t most = walls.size() + kMost;
@@ -162,9 +166,9 @@ void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const
     if (is_known) continue;
     const Vec2 normal = aligned_normal(walls, b);
     walls.push_back({normal, normal.dot(b.middle())});
-    plan.planes.push_back(cut_under(b, walls.back(), plan.box));
-    plan.input.push_back(-1);
+    cuts.push_back(cut_under(b, walls.back(), box));
   }
+  return cuts;
 }
 
 }  // namespace colod

@@ -6,7 +6,7 @@
 // open scans: without the rectangle the mean error is six times as large. A side that cut at the
 // highest outline shaved ridges flat, in strips of millimetres: pitched roofs get some air.
 // Notation: an extent is the largest value of direction · x over a set of outlines.
-#include "candidates.h"
+#include "plan.h"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +16,8 @@
 
 #include "core/error.h"
 #include "core/flat.h"
+#include "leaders.h"
+#include "walls.h"
 
 namespace colod {
 namespace {
@@ -27,6 +29,11 @@ constexpr double kSnapCosine = 0.9998;  // 1.1 degrees
 constexpr double kRidge = 0.5;          // metres that a ridge may rise above the outlines at it
 constexpr double kSteepest = 0.1, kFlattest = 0.995;  // cosines of a pitched roof's slope
 constexpr double kThinnest = 0.5;  // metres: a layer flatter than this is extruded inward
+
+void add_cut(CutPlane cut, int input, CuttingPlan& plan) {
+  plan.planes.push_back(std::move(cut));
+  plan.input.push_back(input);
+}
 
 /// A range of all outline vertices of the given planes.
 Box outline_box(const Planes& planes, const std::vector<int>& which) {
@@ -89,9 +96,39 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
     if (nearest >= 0)
       cut.normal = planes.planes[nearest].normal, cut.offset = planes.planes[nearest].offset;
     plan.limits.push_back({cut.normal, cut.offset});
-    plan.planes.push_back(cut);
-    plan.input.push_back(nearest);
+    add_cut(cut, nearest, plan);
   }
+}
+
+/// The layer's elements.
+std::vector<Element> elements_of(const Planes& planes, std::vector<int> layer_planes) {
+  std::sort(layer_planes.begin(), layer_planes.end());
+  return find_elements(planes, layer_planes);
+}
+
+/// Planes that end an element lead themselves.
+void keep_bounds(const std::vector<int>& layer_planes, const std::vector<Element>& elements,
+                 std::vector<int>& leaders) {
+  for (const Element& element : elements)
+    for (std::size_t i = 0; i < layer_planes.size(); ++i)
+      if (std::binary_search(element.bounds.begin(), element.bounds.end(), layer_planes[i]))
+        leaders[i] = layer_planes[i];
+}
+
+/// The faces that an element lacks.
+void add_rims(const Element& element, CuttingPlan& plan) {
+  for (const Element::Rim& rim : element.rims)
+    add_cut({rim.normal, rim.offset, rim.hull, -1}, rim.like, plan);
+}
+
+/// Of all outlines, down to the foot.
+Box box_around(const Planes& planes, const ExtractionOptions& options) {
+  std::vector<int> every(planes.planes.size());
+  std::iota(every.begin(), every.end(), 0);
+  Box all = outline_box(planes, every);
+  if (!options.is_paper && !planes.box.is_empty())
+    all.min.z() = planes.box.min.z();  // walls of airborne clouds end above the ground
+  return all;
 }
 
 }  // namespace
@@ -117,11 +154,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   std::erase_if(layer_planes, [&](int p) { return planes.planes[p].outline.vertices.empty(); });
   if (layer_planes.empty())
     throw Error(Stage::kProcess, "extraction", "the layer has no plane with an outline");
-  std::vector<int> every(planes.planes.size());
-  std::iota(every.begin(), every.end(), 0);
-  Box all = outline_box(planes, every);
-  if (!options.is_paper && !planes.box.is_empty())
-    all.min.z() = planes.box.min.z();  // walls of airborne clouds end above the ground
+  const Box all = box_around(planes, options);
   plan.box = all;
   for (int axis = 0; axis < 3; ++axis)  // one flat region still needs a box
     if (all.size()[axis] < kThinnest / 10)
@@ -134,20 +167,22 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   }
   std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
   if (!options.is_paper) {
-    find_elements(planes, layer_planes, plan);
-    keep_bounds(layer_planes, plan, leaders);
+    plan.elements = elements_of(planes, layer_planes);
+    keep_bounds(layer_planes, plan.elements, leaders);
   }
   for (std::size_t i = 0; i < layer_planes.size(); ++i) {
     const int p = layer_planes[i];
     const Plane& leader = planes.planes[leaders[i]];
     if (std::find(plan.input.begin(), plan.input.end(), p) != plan.input.end()) continue;
-    plan.planes.push_back({leader.normal, leader.offset,
-                           grown_hull(leader, planes.planes[p].outline.vertices, options.growth),
-                           leaders[i]});
-    plan.input.push_back(p);
+    add_cut({leader.normal, leader.offset,
+             grown_hull(leader, planes.planes[p].outline.vertices, options.growth), leaders[i]},
+            p, plan);
   }
   for (const Element& element : plan.elements) add_rims(element, plan);
-  if (!options.is_paper) add_walls(planes, layer_planes, rays, plan);
+  if (!options.is_paper)
+    for (const CutPlane& wall :
+         walls_under_borders(planes, layer_planes, rays, plan.box, plan.limits))
+      add_cut(wall, -1, plan);
   return plan;
 }
 

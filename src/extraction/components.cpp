@@ -5,10 +5,11 @@
 // of a pinch leaves copies that touch, which readers that weld equal points join again; here cells
 // are turned round until no pinch is left, under both rules.
 // Notation: a pinch is an edge with more than two faces, or a vertex with more than one fan.
+#include "components.h"
+
 #include <algorithm>
 
-#include "labels.h"
-#include "surface.h"
+#include "boundary.h"
 
 namespace colod {
 namespace {
