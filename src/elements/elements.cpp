@@ -27,9 +27,8 @@ struct Detector {
   bool is_for_unknown;  ///< what it finds counts only where it is no part of what is known
 };
 
-/// The order in which elements are found, and in which rooms that ask take them: what encloses most
-/// first, so that a balcony's walls are no chimney, and what is seen from one side only after what
-/// is seen from both.
+/// In the order in which elements are found, returned and told to other rooms: of two that share
+/// planes the earlier one takes them. What is seen from both sides goes before what one side shows.
 constexpr Detector kDetectors[] = {
     {elements::find_balconies, false},      {elements::find_balconies_from_below, true},
     {elements::find_loggias, false},        {elements::find_chimneys, true},
