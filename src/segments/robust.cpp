@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "assignment.h"
+#include "ownership.h"
 #include "rules.h"
 
 namespace colod {
@@ -120,8 +121,8 @@ void mark_spires(const Planes& planes, std::vector<Segment>& segments) {
     double own = -std::numeric_limits<double>::infinity();
     for (const int p : segments[s].planes)
       for (const Vec3& v : planes.planes[p].outline.vertices) own = std::max(own, v.z());
-    if (s > 0 && own > top + least && segments[s].form == Form::kPlain)
-      segments[s].form = Form::kSpire;
+    if (s > 0 && own > top + least && segments[s].kind == ElementKind::kPlain)
+      segments[s].kind = ElementKind::kSpire;
     top = std::max(top, own);
   }
 }
@@ -138,9 +139,9 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   SegmentDraft draft;
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
-  give_to_hollows(planes, grid, options.alcove_area, draft);
+  give_to_elements(planes, grid, options.alcove_area, draft);
   for (std::size_t s = 0; s < draft.segments.size(); ++s)
-    if (draft.segments[s].form == Form::kPlain)
+    if (draft.segments[s].kind == ElementKind::kPlain)
       draft.coverage.push_back(
           {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
   Segments result = finish_segments(planes, std::move(draft));
