@@ -85,7 +85,7 @@ Cloud embed(const std::vector<Descriptor>& segments, double eta, bool is_by_kind
           p[kComponents + 1 + a] = 0.5 * sane(d.eigenvalues[a]) / sum;
           p[kComponents + 4 + a] = is_by_kind ? sane(d.context[a]) : 0;
         }
-        p[kComponents + 7] = is_by_kind && has_kind(d) ? kApart * static_cast<int>(d.form) : 0;
+        p[kComponents + 7] = is_by_kind && has_kind(d) ? kApart * static_cast<int>(d.kind) : 0;
       },
       64);
   return cloud;

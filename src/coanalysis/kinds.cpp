@@ -27,14 +27,14 @@ constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 /// Segments that must be of one kind: the group of each, numbered by first members.
 std::vector<int> must_links(const std::vector<Descriptor>& segments) {
   std::vector<int> group;
-  std::map<Form, int> of_form;
+  std::map<ElementKind, int> of_kind;
   int groups = 0;
   for (const Descriptor& d : segments) {
     if (!has_kind(d)) {
       group.push_back(groups++);
       continue;
     }
-    const auto [at, is_new] = of_form.try_emplace(d.form, groups);
+    const auto [at, is_new] = of_kind.try_emplace(d.kind, groups);
     groups += is_new;
     group.push_back(at->second);
   }

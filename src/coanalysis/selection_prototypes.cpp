@@ -98,7 +98,7 @@ std::vector<Descriptor> first_centres(const std::vector<const Descriptor*>& samp
 // Mean histogram, geometric mean of the eigenvalues.
 Descriptor mean_of(const std::vector<const Descriptor*>& members) {
   Descriptor mean;
-  mean.form = members.front()->form;
+  mean.kind = members.front()->kind;
   Vec3 logs = Vec3::Zero();
   for (const Descriptor* d : members) {
     for (std::size_t b = 0; b < mean.d2.size(); ++b) mean.d2[b] += d->d2[b];
@@ -115,9 +115,9 @@ std::vector<Descriptor> find_centres(const std::vector<const Descriptor*>& items
   std::vector<const Descriptor*> sample;
   const std::size_t wanted = std::min<std::size_t>(items.size(), kSample);
   for (std::size_t i = 0; i < wanted; ++i) sample.push_back(items[i * items.size() / wanted]);
-  std::set<Form> kinds;  // none without a prototype
+  std::set<ElementKind> kinds;  // none without a prototype
   for (const Descriptor* d : items)
-    if (has_kind(*d) && kinds.insert(d->form).second) sample.push_back(d);
+    if (has_kind(*d) && kinds.insert(d->kind).second) sample.push_back(d);
   std::vector<Descriptor> centres = first_centres(sample, eta, most);
   for (int round = 0; round < kLloydRounds; ++round) {
     std::vector<Nearest> nearest(sample.size());

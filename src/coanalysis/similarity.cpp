@@ -143,7 +143,7 @@ Vec3 context(const Planes& planes, const Segment& segment) {
 
 Descriptor describe(const Planes& planes, const Segment& segment, std::uint64_t seed, int pairs) {
   Descriptor d;
-  d.form = segment.form;
+  d.kind = segment.kind;
   d.area = std::isfinite(segment.area) ? segment.area : 0;
   d.volume = std::isfinite(segment.volume) ? segment.volume : 0;
   std::vector<Triangle> surface = surface_of(planes, segment);
@@ -183,7 +183,9 @@ std::vector<Descriptor> describe_segments(const Planes& planes, const Segments& 
   return result;
 }
 
-bool has_kind(const Descriptor& d) { return d.form != Form::kPlain && d.form != Form::kSpire; }
+bool has_kind(const Descriptor& d) {
+  return d.kind != ElementKind::kPlain && d.kind != ElementKind::kSpire;
+}
 
 double shape_distance(const Descriptor& a, const Descriptor& b) {
   double sum = 0;
@@ -195,7 +197,7 @@ double shape_distance(const Descriptor& a, const Descriptor& b) {
 }
 
 bool is_one_kind(const Descriptor& a, const Descriptor& b) {
-  return has_kind(a) && a.form == b.form;
+  return has_kind(a) && a.kind == b.kind;
 }
 
 double segment_distance(const Descriptor& a, const Descriptor& b, double eta) {

@@ -4,13 +4,14 @@
 // fractions of a millimetre, and facets as narrow. Both rules contract them, while the surface
 // stays closed, keeps its directions and cuts itself nowhere.
 // Notation: an edge is (length, vertex, vertex), the vertices rising.
+#include "contraction.h"
+
 #include <algorithm>
 #include <limits>
 #include <set>
 #include <tuple>
 
 #include "core/intersections.h"
-#include "surface.h"
 
 namespace colod {
 namespace {

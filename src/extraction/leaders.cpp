@@ -5,11 +5,11 @@
 // on a coarse layer a shallow recess is no detail. No plane is moved, so that the planes of coarser
 // layers stay planes of the finer ones.
 // Notation: p leader, q the plane that takes its place.
+#include "leaders.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "candidates.h"
 
 namespace colod {
 namespace {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rounds/reduce.h"
+
 namespace colod {
 namespace {
 

@@ -11,28 +11,31 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "parts.h"
+#include "growing.h"
+#include "items.h"
+#include "noise.h"
+#include "orientation.h"
+#include "outline.h"
+#include "paper.h"
+#include "region.h"
+#include "regularize.h"
+#include "round.h"
 
 namespace colod {
 namespace {
 
 using namespace regions;
 
-// Three residuals of a whole wall, which on scans is 2.3 times that of 1.5 m of it (0.012 m against
-// 0.027 m on simulated photogrammetry).
-constexpr double kNoiseFactor = 7;
 constexpr double kMoveShare = 1.0 / 3;  // of the growing distance: what aligning may cost
 constexpr double kLeastMove = 0.0005;   // metres: likewise without noise; files have mm
 constexpr double kOffsetWidth = 0.6;    // of the growing distance: parallel planes are one …
 constexpr double kLeastOffset = 0.05;   // metres: … and closer than this …
 constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
-constexpr double kPlainDistance = 0.003;      // metres: planes of exact models that have few
 constexpr double kMostDistance = 0.2;         // metres
 constexpr double kLeastShare = 1e-4;          // of the building's area: the least region …
 constexpr double kLeastShareExact = 3e-5;  // … of an exact model: large houses have windows, too
 constexpr double kMostShare = 0.01;        // a region this large is never too small
 constexpr std::size_t kMostPlanes = 4000;
-constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
 
 double used_area(const Items& items) {
   double sum = 0;
@@ -86,22 +89,19 @@ AlignOptions align_options(double noise, double distance, const Box& box) {
           .offset_width = distance > kPlainDistance ? std::max(width, together) : width};
 }
 
-/// Flat to the millimetre, as what people draw.
-bool is_exact(double noise) { return kNoiseFactor * noise <= kPlainDistance; }
-
 /// The regions of an exact model of few planes, grown so tightly that walls which bend by a
 /// centimetre stay two; none: it is not one.
-std::vector<Region> plain_regions(const Items& items, double noise, double angle_deg) {
-  if (!is_exact(noise)) return {};
+std::vector<Region> plain_regions(const Items& items, Planes::Surface surface, double angle_deg) {
+  if (surface != Planes::Surface::kExact) return {};
   std::vector<Region> regions = grow_regions(items, items.normal, {kPlainDistance, angle_deg});
   if (regions.size() > kFewPlanes) regions.clear();
   return regions;
 }
 
 /// m²: regions below are no planes. Rougher surfaces need larger ones.
-double least_area(double noise, double distance, double total) {
+double least_area(Planes::Surface surface, double distance, double total) {
   const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
-  const double share = is_exact(noise) ? kLeastShareExact : kLeastShare;
+  const double share = surface == Planes::Surface::kExact ? kLeastShareExact : kLeastShare;
   return std::min(std::max(absolute, share * total), kMostShare * total);
 }
 
@@ -134,14 +134,15 @@ std::vector<Region> flat_regions(const Items& items, const Box& box, double tota
                                  const PlaneOptions& options, Planes& result) {
   const double noise = estimate_noise(items);
   result.distance = growing_distance(noise, box, options);
-  std::vector<Region> regions = plain_regions(items, noise, options.angle_deg);
+  result.surface = judge_surface(noise, result.distance);
+  std::vector<Region> regions = plain_regions(items, result.surface, options.angle_deg);
   if (!regions.empty()) {
     result.distance = std::min(kPlainDistance, result.distance);
   } else {
-    const std::vector<Vec3> smooth = smooth_normals(items, noise > kCleanNoise ? 2 : 0);
+    const std::vector<Vec3> smooth = smooth_normals(items, noise > kSmoothedNoise ? 2 : 0);
     regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
   }
-  const double least = least_area(noise, result.distance, total);
+  const double least = least_area(result.surface, result.distance, total);
   drop_small(items, least / 4, options.min_points / 2, regions);
   limit_count(regions, result.warnings);
   regularize(items, result.distance, align_options(noise, result.distance, box), regions);
@@ -201,10 +202,15 @@ void sort_planes(std::vector<Plane>& planes) {
 
 }  // namespace
 
+Planes::Surface surface_at(double distance) {
+  return distance <= kLeastDistance ? Planes::Surface::kClean : Planes::Surface::kNoisy;
+}
+
 Planes detect_planes(const Source& source, const PlaneOptions& options) {
   Planes result;
   Items items = collect_items(source);
   result.distance = options.distance;
+  result.surface = surface_at(options.distance);
   std::vector<Region> regions =
       options.is_paper ? grow_with_cgal(items, options) : robust_regions(items, options, result);
   orient_by_items(items, regions);

@@ -14,7 +14,9 @@
 #include <numbers>
 #include <tuple>
 
-#include "parts.h"
+#include "core/flat.h"
+#include "sides.h"
+#include "stretches.h"
 
 namespace colod {
 namespace rounds {
@@ -34,8 +36,6 @@ constexpr double kLeastShare = 0.01;  // of the source's area
 constexpr double kLeastArea = 5;      // m²: smaller ones are pipes and balusters
 constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 std::vector<BentEdge> bent_edges(const Facets& facets) {
   struct Use {

@@ -125,7 +125,7 @@ std::vector<Coverage> fidelity_coverage(const HitGrid& grid, const Segments& seg
   }
   for (std::size_t s = 0; s < segments.segments.size(); ++s)
     if (const Segment& alcove = segments.segments[s];
-        alcove.is_alcove && alcove.form == Form::kPlain) {
+        alcove.is_alcove && alcove.kind == ElementKind::kPlain) {
       const int set = sets.number({static_cast<int>(s)});
       counts.resize(std::max(counts.size(), sets.size()), 0);
       counts[set] += static_cast<double>(alcove.voxels);

@@ -13,9 +13,9 @@
 //   P(I): they are enclosed by the alcove's segment.
 // Notation: A_eps, n_r as in the paper.
 #include <algorithm>
-#include <limits>
 
 #include "assignment.h"
+#include "ownership.h"
 #include "rules.h"
 
 namespace colod {
@@ -27,7 +27,6 @@ constexpr double kFrontShare = 0.4;  // of a plane's area in front of which an a
 constexpr double kDetailShare = 0.005;  // of the enclosed voxels: the most a detail may have
 constexpr double kDetailContact = 0.2;  // of the surface of one of two details that are one
 constexpr double kMergeOverlap = 0.5;   // the paper's
-constexpr double kLeastRise = 0.1;  // of the diagonal: a spire's above all segments of more volume
 
 VoxelGroups aggregate(const HitGrid& grid, const HitFilter& filter) {
   VoxelGroups groups =
@@ -111,21 +110,6 @@ void append_alcoves(const HitGrid& grid, const OwnedGroups& alcoves, SegmentDraf
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
 }
 
-/// What stands far above all larger segments shows from everywhere. Segments come by falling
-/// volume.
-void mark_spires(const Planes& planes, std::vector<Segment>& segments) {
-  const double least = kLeastRise * planes.box.diagonal();
-  double top = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < segments.size(); ++s) {
-    double own = -std::numeric_limits<double>::infinity();
-    for (const int p : segments[s].planes)
-      for (const Vec3& v : planes.planes[p].outline.vertices) own = std::max(own, v.z());
-    if (s > 0 && own > top + least && segments[s].form == Form::kPlain)
-      segments[s].form = Form::kSpire;
-    top = std::max(top, own);
-  }
-}
-
 }  // namespace
 
 Segments robust_segments(const Planes& planes, const HitGrid& grid, const SegmentOptions& options) {
@@ -138,13 +122,12 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   SegmentDraft draft;
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
-  give_to_hollows(planes, grid, options.alcove_area, draft);
+  give_to_elements(planes, grid, options.alcove_area, draft);
   for (std::size_t s = 0; s < draft.segments.size(); ++s)
-    if (draft.segments[s].form == Form::kPlain)
+    if (draft.segments[s].kind == ElementKind::kPlain)
       draft.coverage.push_back(
           {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
   Segments result = finish_segments(planes, std::move(draft));
-  mark_spires(planes, result.segments);
   result.coverage = fidelity_coverage(grid, result);
   return result;
 }

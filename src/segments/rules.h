@@ -30,12 +30,6 @@ int append_segments(const HitGrid& grid, const OwnedGroups& owned, SegmentDraft&
 /// segment of all planes, with a warning.
 Segments finish_segments(const Planes& planes, SegmentDraft draft);
 
-/// The planes of each tray, and of each niche all of whose planes are smaller than `alcove_area`,
-/// become one segment, and the walls of a chimney that its segment has little of; before the
-/// coverage is known.
-void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
-                     SegmentDraft& draft);
-
 /// What of the fidelity (eq. 3) is lost when segments are dropped together; shares sum to 1, the
 /// empty set's cannot be lost.
 std::vector<Coverage> fidelity_coverage(const HitGrid& grid, const Segments& segments);

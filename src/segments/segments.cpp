@@ -98,7 +98,7 @@ Segments finish_segments(const Planes& planes, SegmentDraft draft) {
       out.coverage.push_back({{static_cast<int>(s)}, static_cast<double>(out.segments[s].voxels)});
   double total = 0;
   for (const Coverage& c : out.coverage) total += c.share;
-  if (!(total > 0)) {  // nothing but hollows
+  if (!(total > 0)) {  // nothing but elements
     for (Coverage& c : out.coverage) c.share = 1;
     total = static_cast<double>(out.coverage.size());
   }
