@@ -15,9 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "clustering_spectrum.h"
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "k_means.h"
 #include "kinds.h"
@@ -76,6 +78,22 @@ std::vector<int> paper_classes(const std::vector<Descriptor>& segments, int k,
   return cluster;
 }
 
+std::vector<KindFacts> describe_kinds(const std::vector<Descriptor>& segments,
+                                      const std::vector<int>& kind,
+                                      const std::vector<int>& classes) {
+  std::map<int, std::pair<int, std::vector<double>>> members;  // class and extents
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    members[kind[s]].first = classes[s];
+    members[kind[s]].second.push_back(segments[s].extent);
+  }
+  std::vector<KindFacts> facts;
+  for (auto& [k, its] : members)
+    facts.push_back({1 + its.first, its.second.size(), median(its.second)});
+  std::stable_sort(facts.begin(), facts.end(),
+                   [](const KindFacts& a, const KindFacts& b) { return a.extent > b.extent; });
+  return facts;
+}
+
 // Kinds first, then layers of whole kinds; empty when there are fewer than k kinds.
 std::vector<int> robust_classes(const std::vector<Descriptor>& segments, int k,
                                 const ClusteringOptions& options, Clustering& result) {
@@ -83,7 +101,7 @@ std::vector<int> robust_classes(const std::vector<Descriptor>& segments, int k,
   result.eigenvalues = std::move(kinds.eigenvalues);
   if (!kinds.has_converged) result.warnings.push_back(kNotConverged);
   std::vector<int> classes = classes_of_kinds(segments, kinds.kind, k);
-  if (!classes.empty()) result.kind = std::move(kinds.kind);
+  if (!classes.empty()) result.kinds = describe_kinds(segments, kinds.kind, classes);
   return classes;
 }
 

@@ -26,9 +26,16 @@ struct ClusteringOptions {
   std::uint64_t seed = 1;
 };
 
+/// A kind of segments, which stands on one layer.
+struct KindFacts {
+  int layer = 1;
+  std::size_t segments = 0;
+  double extent = 0;  ///< metres, the median
+};
+
 struct Clustering {
-  std::vector<int> layer;  ///< per given segment, 1..l_n − 1 (0 everywhere when l_n is 1)
-  std::vector<int> kind;   ///< per given segment: its kind, the largest first; empty: none was told
+  std::vector<int> layer;        ///< per given segment, 1..l_n − 1 (0 everywhere when l_n is 1)
+  std::vector<KindFacts> kinds;  ///< largest first; empty: size decided, or the paper's rules did
   std::vector<double> eigenvalues;  ///< the smallest of L_norm, rising, at most 10
   std::vector<std::string> warnings;
 };

@@ -27,6 +27,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 #include "core/parallel.h"
 #include "selection_model.h"
@@ -108,19 +109,51 @@ Solved solve_within(const Model& model, const SelectionOptions& options, double 
   return {x, std::max(first.bound, objective(model, x))};
 }
 
-// lp_solve is asked only where the bound does not meet the ascent's choice, and believed only if
-// its choice is no worse.
+// A small program is lp_solve's as a whole, and believed if its choice is no worse than the
+// ascent's and within our own bound.
 Solved solve(const Model& model, const SelectionOptions& options, Selection& result) {
-  const bool is_small = model.is_exact && model.size() <= options.exact_segments;
+  const bool is_small =
+      model.is_exact && model.size() > 0 && model.size() <= options.exact_segments;
   const Solved ascent = solve_within(model, options, is_small ? 0 : options.gap, result.starts);
+  if (!is_small) return ascent;
   const double value = objective(model, ascent.x);
-  if (!is_small || ascent.bound - value <= kOptimalGap) return ascent;
   const WholeSolution whole = solve_whole(model);
-  if (whole.is_proven && objective(model, whole.x) >= value - kOptimalGap)
-    return {whole.x, objective(model, whole.x)};
-  result.warnings.push_back(
-      "layer 0: the exact program did not end within its work limit; block ascent with a bound");
+  const double found = whole.is_proven ? objective(model, whole.x) : 0;
+  if (whole.is_proven && found >= value - kOptimalGap &&
+      found <= ascent.bound + kOptimalGap * std::max(1.0, std::abs(found))) {
+    result.is_lp_solve = true;
+    return {found > value + kOptimalGap ? whole.x : ascent.x, std::max(found, value)};
+  }
+  if (ascent.bound - value > kOptimalGap)
+    result.warnings.push_back(
+        "layer 0: the exact program did not end within its work limit; block ascent with a bound");
   return ascent;
+}
+
+// Where most elements of a kind have left layer 0 the others leave it, too, as far as the bound on
+// f_r lets them: one balcony of a street is no main shape.
+void keep_kinds_whole(const std::vector<SelectionBuilding>& buildings, const Model& model, Choice x,
+                      Selection& result) {
+  const auto kind_of = [&](int k) {
+    return buildings[model.items[k].building].segments[model.items[k].segment].kind;
+  };
+  std::map<ElementKind, int> balance;  // those that left less those that stay
+  for (int k = 0; k < model.size(); ++k) balance[kind_of(k)] += x[k] ? 1 : -1;
+  balance[ElementKind::kPlain] = 0;
+  for (int k = 0; k < model.size(); ++k) {
+    if (x[k] || balance[kind_of(k)] <= 0) continue;
+    const Item& item = model.items[k];
+    std::vector<char>& is_layer0 = result.is_layer0[item.building];
+    if (std::count(is_layer0.begin(), is_layer0.end(), 1) == 1) continue;
+    x[k] = 1;
+    const Block& block = model.blocks[item.block];
+    if (block_loss(block, x) <= block.capacity) {
+      is_layer0[item.segment] = 0;
+      result.overruled.push_back({item.building, item.segment});
+    } else {
+      x[k] = 0;
+    }
+  }
 }
 
 double since(std::chrono::steady_clock::time_point start) {
@@ -163,6 +196,7 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                   100 * result.gap);
     result.warnings.push_back(text);
   }
+  if (!options.is_paper) keep_kinds_whole(buildings, model, solved.x, result);
   result.seconds = since(start);
   return result;
 }

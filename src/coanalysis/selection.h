@@ -41,14 +41,24 @@ enum class SelectionStatus {
 };  ///< proven optimal (to 1e-7); best found with a bound; no segments at all
 const char* to_string(SelectionStatus status);
 
+/// A segment that the program kept and a rule took away.
+struct Overruled {
+  int building = 0, segment = 0;
+};
+
 struct Selection {
   std::vector<std::vector<char>> is_layer0;  ///< [building][segment]
-  int starts = 0;                            ///< of the ascent
+  /// Robust: elements of a kind of which most left layer 0, and which leave it, too, where the
+  /// bound on f_r holds. Objective, bound and gap speak of the program's choice, before.
+  std::vector<Overruled> overruled;
+  int starts = 0;        ///< of the ascent
   bool is_exact = true;  ///< all pairs compared: `objective` is E_0 and not a lower bound on it
   double objective = 0;  ///< E_0 of the result of the optimisation, or proven to be no more
   double bound = 0;      ///< proven upper bound on E_0
   double gap = 0;        ///< (bound − objective) / max(1, |objective|)
   SelectionStatus status = SelectionStatus::kEmpty;
+  bool is_lp_solve = false;  ///< lp_solve solved the whole program to proof; else block ascent
+                             ///< found the choice and our own bound says how good it is
   double seconds = 0;
   std::vector<std::string> warnings;
 };

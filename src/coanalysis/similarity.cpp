@@ -183,9 +183,7 @@ std::vector<Descriptor> describe_segments(const Planes& planes, const Segments& 
   return result;
 }
 
-bool has_kind(const Descriptor& d) {
-  return d.kind != ElementKind::kPlain && d.kind != ElementKind::kSpire;
-}
+bool has_kind(const Descriptor& d) { return d.kind != ElementKind::kPlain; }
 
 double shape_distance(const Descriptor& a, const Descriptor& b) {
   double sum = 0;

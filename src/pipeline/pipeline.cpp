@@ -104,8 +104,7 @@ void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
     std::vector<std::vector<int>> spares;
     if (!is_paper(o) && layer.layer == 0 && o.layers > 1)
       spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
-    Extraction result =
-        extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o);
+    Extraction result = extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o);
     planes.insert(planes.end(), result.joined.begin(), result.joined.end());
     layer.mesh = std::move(result.mesh);
     if (layer.mesh.triangles.empty()) layer.failure = kEmptyLayer;
@@ -306,6 +305,11 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
                                           .seed = options.seed,
                                           .gap = options.gap,
                                           .prior = prior});
+  scene.overruled.clear();
+  for (const Overruled& o : scene.selection.overruled) {
+    const Building& b = scene.buildings[o.building];
+    scene.overruled.push_back({b.source.name, o.segment, b.descriptors[o.segment].kind});
+  }
   std::vector<Descriptor> rest;
   for (std::size_t i = 0; i < scene.buildings.size(); ++i)
     for (std::size_t s = 0; s < scene.buildings[i].descriptors.size(); ++s)

@@ -95,12 +95,20 @@ struct Switching {
   bool is_from_prior = false;         ///< that of another scene, whose buildings counted
 };
 
+/// A segment whose layer a rule decided against the program.
+struct OverruledSegment {
+  std::string building;
+  int segment = 0;
+  ElementKind kind = ElementKind::kPlain;
+};
+
 struct Scene {
   std::vector<Building> buildings;    ///< in the order of the input
   std::vector<ReadFailure> failures;  ///< inputs that could not be read
   std::vector<std::string> warnings;  ///< of the scene as a whole, one line each
   Selection selection;
   Clustering clustering;
+  std::vector<OverruledSegment> overruled;
   Switching switching;
   double coanalysis_seconds = 0;
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh

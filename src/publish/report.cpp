@@ -139,6 +139,38 @@ Json switching_json(const Switching& switching) {
   return json;
 }
 
+/// How many assignments of segments to layers are whose.
+Json decided_json(const Scene& scene, std::size_t segments) {
+  const std::size_t overruled = scene.overruled.size();
+  std::size_t beyond = 0;
+  for (const Building& b : scene.buildings)
+    beyond += static_cast<std::size_t>(std::count_if(
+        b.layer_of_segment.begin(), b.layer_of_segment.end(), [](int l) { return l > 0; }));
+  const bool is_by_kind = !scene.clustering.kinds.empty();
+  return {{"program", segments - std::min(segments, beyond)},
+          {"clustering", is_by_kind ? beyond - std::min(beyond, overruled) : 0},
+          {"size", is_by_kind ? 0 : beyond - std::min(beyond, overruled)},
+          {"overruled", overruled}};
+}
+
+Json kinds_json(const Clustering& clustering) {
+  Json json = Json::array();
+  for (const KindFacts& k : clustering.kinds)
+    json.push_back({{"layer", k.layer}, {"segments", k.segments}, {"extent", k.extent}});
+  return json;
+}
+
+/// What the program kept on layer 0 and a rule took away.
+Json overruled_json(const Scene& scene) {
+  Json json = Json::array();
+  for (const OverruledSegment& o : scene.overruled)
+    json.push_back({{"building", o.building},
+                    {"segment", o.segment},
+                    {"kind", name_of(o.kind)},
+                    {"rule", "coanalysis.whole-kinds"}});
+  return json;
+}
+
 Json coanalysis_json(const Scene& scene) {
   std::size_t segments = 0;
   for (const Building& b : scene.buildings) segments += b.segments.segments.size();
@@ -151,6 +183,10 @@ Json coanalysis_json(const Scene& scene) {
           {"bound", scene.selection.bound},
           {"gap", scene.selection.gap},
           {"status", to_string(scene.selection.status)},
+          {"solver", scene.selection.is_lp_solve ? "lp_solve" : "block ascent"},
+          {"decided", decided_json(scene, segments)},
+          {"kinds", kinds_json(scene.clustering)},
+          {"overruled", overruled_json(scene)},
           {"seconds", scene.coanalysis_seconds},
           {"warnings", warnings}};
 }

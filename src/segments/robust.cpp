@@ -123,10 +123,6 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
   give_to_elements(planes, grid, options.alcove_area, draft);
-  for (std::size_t s = 0; s < draft.segments.size(); ++s)
-    if (draft.segments[s].kind == ElementKind::kPlain)
-      draft.coverage.push_back(
-          {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
   Segments result = finish_segments(planes, std::move(draft));
   result.coverage = fidelity_coverage(grid, result);
   return result;

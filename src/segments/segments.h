@@ -21,8 +21,7 @@ struct SegmentOptions {
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one
   bool is_alcove = false;   ///< a recess: its voxels lie outside the building
-  /// Of an element (elements/elements.h) or a spire, which makes the building much taller; chimneys
-  /// stay plain: rays part them from the body.
+  /// Of an element (elements/elements.h); chimneys stay plain: rays part them from the body.
   ElementKind kind = ElementKind::kPlain;
   std::int64_t voxels = 0;
   double volume = 0;  ///< m³, voxels × voxel volume

@@ -296,10 +296,18 @@ void Store::put_coanalysis(const Scene& scene) {
   std::vector<std::string> warnings = scene.selection.warnings;
   warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
                   scene.clustering.warnings.end());
+  Json kinds = Json::array(), overruled = Json::array();
+  for (const KindFacts& k : scene.clustering.kinds)
+    kinds.push_back({k.layer, k.segments, k.extent});
+  for (const OverruledSegment& o : scene.overruled)
+    overruled.push_back({o.building, o.segment, name_of(o.kind)});
   const Json json{{"objective", scene.selection.objective},
                   {"bound", scene.selection.bound},
                   {"gap", scene.selection.gap},
                   {"status", static_cast<int>(scene.selection.status)},
+                  {"lp_solve", scene.selection.is_lp_solve},
+                  {"kinds", kinds},
+                  {"overruled", overruled},
                   {"seconds", scene.coanalysis_seconds},
                   {"prior", scene.has_prior},
                   {"warnings", warnings}};
@@ -315,6 +323,11 @@ void Store::get_coanalysis(Scene& scene) const {
     scene.selection.bound = json.value("bound", 0.0);
     scene.selection.gap = json.value("gap", 0.0);
     scene.selection.status = static_cast<SelectionStatus>(json.value("status", 0));
+    scene.selection.is_lp_solve = json.value("lp_solve", false);
+    for (const Json& k : json.value("kinds", Json::array()))
+      scene.clustering.kinds.push_back({k.at(0), k.at(1), k.at(2)});
+    for (const Json& o : json.value("overruled", Json::array()))
+      scene.overruled.push_back({o.at(0), o.at(1), kind_named(o.at(2).get<std::string>())});
     scene.coanalysis_seconds = json.value("seconds", 0.0);
     scene.has_prior = json.value("prior", false);
     scene.selection.warnings = json.value("warnings", std::vector<std::string>{});

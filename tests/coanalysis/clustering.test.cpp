@@ -56,15 +56,41 @@ struct TwoBoxes {
 
 }  // namespace
 
-TEST_CASE("what is of a kind is on one layer, whatever its size") {
-  std::vector<Descriptor> segments = kinds(2, 12);
-  for (const int i : {0, 2, 4, 1}) segments[i].kind = ElementKind::kBalcony;
-  for (const int i : {3, 5, 6}) segments[i].kind = ElementKind::kLoggia;
-  const std::vector<int> layer = cluster_segments(segments, {}).layer;
-  CHECK(layer[8] == 1);
-  CHECK(layer[9] == 2);
-  for (const int i : {0, 2, 4, 1}) CHECK(layer[i] == 1);
-  for (const int i : {3, 5, 6}) CHECK(layer[i] == 2);
+TEST_CASE("elements of a kind are on one layer, whatever their size") {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    std::mt19937_64 random(seed);
+    std::vector<Descriptor> segments;
+    const auto add = [&](ElementKind kind, int shape, double extent) {
+      segments.push_back(of_kind(shape, extent, random));
+      segments.back().kind = kind;
+    };
+    for (const double extent : {0.4, 0.9, 2.5, 4.0, 0.5}) add(ElementKind::kBalcony, 1, extent);
+    for (const double extent : {0.3, 1.2, 3.5}) add(ElementKind::kDormer, 2, extent);
+    for (int i = 0; i < 12; ++i) add(ElementKind::kPlain, 3, 3.0);   // parts of roofs
+    for (int i = 0; i < 20; ++i) add(ElementKind::kPlain, 5, 0.35);  // chimneys
+    const Clustering c = cluster_segments(segments, {.seed = seed});
+    for (int i = 1; i < 5; ++i) CHECK(c.layer[i] == c.layer[0]);
+    for (int i = 6; i < 8; ++i) CHECK(c.layer[i] == c.layer[5]);
+    for (int i = 8; i < 20; ++i) CHECK(c.layer[i] == 1);
+    for (int i = 20; i < 40; ++i) CHECK(c.layer[i] == 2);
+    CHECK(c.kinds.size() >= 4);
+    std::size_t members = 0;
+    for (const KindFacts& k : c.kinds) members += k.segments;
+    CHECK(members == segments.size());
+  }
+}
+
+TEST_CASE("where a part sits tells kinds of one shape and size apart") {
+  std::mt19937_64 random(4);
+  std::vector<Descriptor> segments;
+  for (int i = 0; i < 24; ++i) {
+    segments.push_back(of_kind(1, 0.6, random));
+    segments.back().context = i % 2 ? Vec3(0.2, 0.9, 1) : Vec3(0, 0, 0.1);  // chimneys and steps
+  }
+  for (int i = 0; i < 12; ++i) segments.push_back(of_kind(4, 3, random));
+  const Clustering c = cluster_segments(segments, {.layers = 4});
+  for (int i = 2; i < 24; ++i) CHECK(c.layer[i] == c.layer[i % 2]);
+  CHECK(c.layer[0] != c.layer[1]);
 }
 
 TEST_CASE("kinds that differ are told apart and ordered by size") {
@@ -102,9 +128,7 @@ TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, simi
   std::mt19937_64 random(5);
   std::vector<Descriptor> segments;
   for (int i = 0; i < 600; ++i) segments.push_back(random_descriptor(i % 6, random));
-  std::vector<int> ids(600);
-  for (int i = 0; i < 600; ++i) ids[i] = i;
-  const auto near = nearest_neighbours(segments, ids, 20, 4);
+  const auto near = nearest_neighbours(segments, 20, 4, segment_similarity);
   int found = 0;
   for (int i = 0; i < 600; ++i) {
     std::vector<double> all;
@@ -123,29 +147,23 @@ TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, simi
 
 TEST_CASE("nearest neighbours: one, none, all alike, not a number") {
   std::mt19937_64 random(6);
-  CHECK(nearest_neighbours({}, {}, 5, 4).empty());
+  CHECK(nearest_neighbours({}, 5, 4, kind_similarity).empty());
   std::vector<Descriptor> segments(1, of_kind(1, 2, random));
-  CHECK(nearest_neighbours(segments, {0}, 5, 4)[0].empty());
+  CHECK(nearest_neighbours(segments, 5, 4, kind_similarity)[0].empty());
   segments.assign(300, segments[0]);
   segments[7].eigenvalues[1] = std::numeric_limits<double>::quiet_NaN();
-  std::vector<int> ids(300);
-  for (int i = 0; i < 300; ++i) ids[i] = i;
-  const auto near = nearest_neighbours(segments, ids, 5, 4);
+  const auto near = nearest_neighbours(segments, 5, 4, kind_similarity);
   CHECK(near[8].size() == 5);
 }
 
-TEST_CASE("flat segments go to the layer of their size, without moving the others") {
-  auto segments = kinds(2, 6);
-  const std::vector<int> without = cluster_segments(segments, {.eta = 20}).layer;
-  std::mt19937_64 random(2);
-  for (const double extent : {3.0, 0.7}) {
-    segments.push_back(of_kind(6, extent, random));
-    segments.back().is_flat = true;
-  }
-  const std::vector<int> with = cluster_segments(segments, {.eta = 20}).layer;
-  CHECK(std::equal(without.begin(), without.end(), with.begin()));
-  CHECK(with[12] == 1);
-  CHECK(with[13] == 2);
+TEST_CASE("adding segments of known kinds moves no other") {
+  std::vector<Descriptor> segments = kinds(4, 10);
+  const std::vector<int> before = cluster_segments(segments).layer;
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 8; ++i) segments.push_back(of_kind(i % 4, 4 * std::pow(0.25, i % 4), random));
+  const std::vector<int> after = cluster_segments(segments).layer;
+  CHECK(std::equal(before.begin(), before.end(), after.begin()));
+  for (int i = 0; i < 8; ++i) CHECK(after[40 + i] == before[i]);
 }
 
 TEST_CASE("by size: one absolute threshold a layer") {
