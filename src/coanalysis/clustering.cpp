@@ -26,13 +26,15 @@
 #include "clustering_spectrum.h"
 #include "core/flat.h"
 #include "core/parallel.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
+using namespace parameters::coanalysis;
+
 constexpr int kRestarts = 20, kMaxIterations = 100;
 constexpr double kSameEigenvalue = 1e-9;
-constexpr double kSameKind = 0.05;     // distance; samples of the same shape differ by up to 0.02
 constexpr int kVoters = 5;             // of a prior
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
@@ -108,24 +110,24 @@ int size_class(const Descriptor& d, int k, double threshold) {
 // Per cluster what it is ordered by: mean volume or median extent; −1 when empty.
 std::vector<double> cluster_sizes(const std::vector<Descriptor>& segments,
                                   const std::vector<int>& ids, const std::vector<int>& cluster,
-                                  int k, bool is_paper) {
+                                  int k, bool is_by_extent) {
   std::vector<double> size(k, -1.0);
   for (int c = 0; c < k; ++c) {
     std::vector<double> values;
     for (std::size_t i = 0; i < ids.size(); ++i)
       if (cluster[i] == c)
-        values.push_back(is_paper ? segments[ids[i]].volume : segments[ids[i]].extent);
+        values.push_back(is_by_extent ? segments[ids[i]].extent : segments[ids[i]].volume);
     if (values.empty()) continue;
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-    size[c] = is_paper ? sum / static_cast<double>(values.size()) : median(values);
+    size[c] = is_by_extent ? median(values) : sum / static_cast<double>(values.size());
   }
   return size;
 }
 
 // Renumbers clusters by falling size; ties by the first segment. False when one is empty.
 bool order_clusters(const std::vector<Descriptor>& segments, const std::vector<int>& ids, int k,
-                    bool is_paper, std::vector<int>& cluster) {
-  const std::vector<double> size = cluster_sizes(segments, ids, cluster, k, is_paper);
+                    bool is_by_extent, std::vector<int>& cluster) {
+  const std::vector<double> size = cluster_sizes(segments, ids, cluster, k, is_by_extent);
   std::vector<std::size_t> first(k, ids.size());
   for (std::size_t i = ids.size(); i-- > 0;) first[cluster[i]] = i;
   std::vector<int> order(k), rank(k);
@@ -157,7 +159,7 @@ std::vector<int> spectral_classes(const std::vector<Descriptor>& segments,
                                   const std::vector<int>& ids, int k,
                                   const ClusteringOptions& options, Clustering& result) {
   if (static_cast<int>(ids.size()) < k) return {};
-  if (!options.is_paper && !has_kinds(segments, ids, k, options.eta)) return {};
+  if (options.rules.has(Rule::kKinds) && !has_kinds(segments, ids, k, options.eta)) return {};
   const Spectrum spectrum = smallest_spectrum(segments, ids, k, options.eta, options.seed);
   result.eigenvalues = spectrum.values;
   if (spectrum.values.size() < static_cast<std::size_t>(k)) {
@@ -168,7 +170,7 @@ std::vector<int> spectral_classes(const std::vector<Descriptor>& segments,
       spectrum.values[k] - spectrum.values[k - 1] < kSameEigenvalue)
     return {};
   std::vector<int> cluster = k_means(spectrum.vectors, k, options.seed);
-  if (!order_clusters(segments, ids, k, options.is_paper, cluster)) return {};
+  if (!order_clusters(segments, ids, k, options.rules.has(Rule::kMedianExtent), cluster)) return {};
   return cluster;
 }
 
@@ -241,7 +243,8 @@ Clustering classify_segments(const std::vector<Descriptor>& segments, const Prio
   std::vector<int> layer_of_voter;
   for (const auto& [descriptor, layer] : known)
     voters.push_back(*descriptor), layer_of_voter.push_back(layer);
-  settle_forms(segments, voters, layer_of_voter, options.layers, result.layer);
+  if (options.rules.has(Rule::kFormLayers))
+    settle_forms(segments, voters, layer_of_voter, options.layers, result.layer);
   return result;
 }
 
@@ -254,14 +257,15 @@ Clustering cluster_segments(const std::vector<Descriptor>& segments,
 
   std::vector<int> ids, flat;  // in the spectrum, set aside
   for (std::size_t s = 0; s < segments.size(); ++s)
-    (segments[s].is_flat && !options.is_paper ? flat : ids).push_back(static_cast<int>(s));
+    (segments[s].is_flat && options.rules.has(Rule::kFlatSegments) ? flat : ids)
+        .push_back(static_cast<int>(s));
   std::vector<int> classes;
   if (options.layering == Layering::kSpectral && k > 1)
     classes = spectral_classes(segments, ids, k, options, result);
   if (!classes.empty()) {
     for (std::size_t i = 0; i < ids.size(); ++i) result.layer[ids[i]] = 1 + classes[i];
     place_flat(segments, flat, ids, classes, k, result.layer);
-    if (!options.is_paper)
+    if (options.rules.has(Rule::kFormLayers))
       settle_forms(segments, segments, std::vector<int>(result.layer), options.layers,
                    result.layer);
     return result;

@@ -32,6 +32,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "parameters.h"
 #include "selection_model.h"
 
 namespace colod {
@@ -40,15 +41,13 @@ using namespace selection;
 
 namespace {
 
+using namespace parameters::coanalysis;
+
 constexpr double kOptimalGap = 1e-7;  // of the objective: less is rounding
 constexpr int kMaxSteps = 400;        // of the bound
 constexpr double kStepWork = 4e9;     // items × prototypes looked at by all steps together
 constexpr double kStartWork = 5e6;    // by all starts together, but 3 there are
 constexpr double kPolishWork = 2e8;   // nodes × items × prototypes in a round
-constexpr double kDoubt = 2;          // times the least share, and a part of it: near it
-constexpr double kSpireWeight = 4;    // times its voxels: a spire has few for what it shows
-constexpr double kAlike = 0.75;       // similarity of segments that decide together
-constexpr std::ptrdiff_t kMostAlike = 50;
 constexpr int kPolishRounds = 8, kMaxBlockNodes = 400, kMinBlockNodes = 20;
 
 std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& buildings) {
@@ -214,13 +213,14 @@ void decide_together(const std::vector<SelectionBuilding>& buildings, double lea
   }
 }
 
-// Layer 0 by shares of voxels, after the optimum. One block a building that has segments, in order.
+// Layer 0 by shares of voxels, after the optimum, as far as the rules for it are on. One block a
+// building that has segments, in order.
 void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
           const SelectionOptions& options, Selection& result) {
   const double least = options.main_share;
   std::vector<std::vector<double>> shares;
   for (const SelectionBuilding& b : buildings) shares.push_back(voxel_shares(b));
-  decide_together(buildings, least, options.eta, shares);
+  if (options.rules.has(Rule::kAlike)) decide_together(buildings, least, options.eta, shares);
   for (std::size_t i = 0; i < buildings.size(); ++i)
     for (std::size_t s = 0; s < shares[i].size(); ++s)
       if (buildings[i].segments[s].form == Form::kSpire) shares[i][s] *= kSpireWeight;
@@ -230,8 +230,10 @@ void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
     const Block& block = model.blocks[next++];
     const std::vector<double>& share = shares[i];
     if (share.empty()) continue;
-    result.added += add_main(share, least, result.is_layer0[i]);
-    result.removed += remove_small(block, model, share, least, result.is_layer0[i]);
+    if (options.rules.has(Rule::kMainSegments))
+      result.added += add_main(share, least, result.is_layer0[i]);
+    if (options.rules.has(Rule::kLesserSegments))
+      result.removed += remove_small(block, model, share, least, result.is_layer0[i]);
   }
 }
 
@@ -275,7 +277,7 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                   100 * result.gap);
     result.warnings.push_back(text);
   }
-  if (!options.is_paper && options.main_share > 0) tidy(buildings, model, options, result);
+  if (options.main_share > 0) tidy(buildings, model, options, result);
   result.seconds = since(start);
   return result;
 }

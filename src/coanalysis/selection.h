@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/rules.h"
+#include "parameters.h"
 #include "segments/segments.h"
 #include "similarity.h"
 
@@ -18,16 +20,18 @@ struct SelectionBuilding {
 };
 
 struct SelectionOptions {
-  bool is_paper = false;  ///< f_co summed and f_r > 0.8, to the letter; robust: see selection.cpp
+  RuleSet rules = RuleSet::all();  ///< none: f_co summed and f_r > 0.8, to the letter
   double beta = 0.3, lambda = 0.4, eta = 4.0;
   int starts = 8;  ///< of the block ascent
   std::uint64_t seed = 1;
   int exact_segments = 40;  ///< up to this many segments that layer 0 could do without, in all, the
                             ///< whole program goes to lp_solve
-  double main_share = 0.02;  ///< robust: after the optimum segments that enclose at least this
-                             ///< share of their building's voxels (a spire: a quarter of it) join
-                             ///< layer 0, and lesser ones leave it while f_r > 0.95 holds; 0: the
-                             ///< optimum as it is
+  double main_share =
+      parameters::coanalysis::kMainShare;  ///< Rule::kMainSegments, kLesserSegments: after the
+                                           ///< optimum segments that enclose at least this share of
+                                           ///< their building's voxels (a spire: a quarter of it)
+                                           ///< join layer 0, and lesser ones leave it while f_r >
+                                           ///< 0.95 holds; 0: the optimum as it is
   double gap = 0.001;  ///< good enough: stop as soon as the gap is proven to be no more; up to
                        ///< exact_segments the optimum is proven whatever this is
   double gap_warning = 0.05;      ///< a greater gap is warned of

@@ -100,22 +100,23 @@ struct AlignOptions {
   double least_move;
   double most_move;
   double offset_width;
+  bool is_strip_turned;  ///< whether narrow strips may turn farther than others
 };
 /// Joins nearly coplanar neighbours, then aligns directions and offsets where a region's own points
-/// allow.
+/// allow, as far as the rules for each are on.
 void regularize(const Items& items, double distance, const AlignOptions& align,
-                std::vector<Region>& regions);
+                const RuleSet& rules, std::vector<Region>& regions);
 
 // outline.cpp
-/// Per region its outline; small holes are filled, and rings that end near a neighbouring plane are
-/// drawn to it, when `is_robust`.
+/// Per region its outline; small holes are filled (Rule::kHoles), and rings that end near a
+/// neighbouring plane are drawn to it (Rule::kBorders).
 std::vector<Outline> make_outlines(const Items& items, const std::vector<Region>& regions,
-                                   double distance, bool is_robust);
+                                   double distance, const RuleSet& rules);
 double outline_area(const Outline& outline);
 
 // orientation.cpp
 /// Turns planes from whose back clearly more rays escape than from their front; in airborne clouds
 /// what looks away from the sky or towards the roof above it. Returns how many.
-int repair_orientation(std::vector<Plane>& planes, bool is_cloud);
+int repair_orientation(std::vector<Plane>& planes, bool is_airborne_told);
 
 }  // namespace colod::regions

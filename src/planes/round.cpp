@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parameters.h"
 #include "parts.h"
 #include "rounds/rounds.h"
 
 namespace colod::regions {
 namespace {
 
-constexpr std::size_t kMostSides = 2500;  // of a shape: more take half a minute to cut
-constexpr double kFinest = 0.01;  // metres between a side and its arc: twice in both directions
+using namespace parameters::planes;
 
 Region side_region(const Items& items, const RoundShape& shape, const RoundShape::Side& side) {
   Region r;

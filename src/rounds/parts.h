@@ -4,12 +4,12 @@
 #include <numbers>
 #include <vector>
 
+#include "parameters.h"
 #include "rounds.h"
 
 namespace colod::rounds {
 
-constexpr double kMostStep = 31 * std::numbers::pi / 180;  ///< twelve sides and more are round
-constexpr double kExact = 0.003;  ///< metres that a side's corners may be off its plane
+using namespace parameters::rounds;
 
 /// The faces of a mesh with their planes.
 struct Facets {

@@ -20,17 +20,9 @@ namespace rounds {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLeastBend = 0.05 * kDegree;  // between faces of two sides: small near an apex
-constexpr double kLeastStep = 1.5 * kDegree;
 constexpr double kMostEdges = 50000;  // curved edges; scans have more
-constexpr double kOnAxis = 0.01;      // metres: files have mm, and narrow sides turn by them
-constexpr double kSameStep = 0.05;    // of the step
 constexpr std::size_t kSamples = 96;  // meridians that votes begin with
 constexpr std::size_t kPartners = 4;  // of each
-constexpr int kLeastMeridians = 4;    // different ones
-constexpr double kClosedShare = 0.6;  // of all columns: the others are hidden in a house
-constexpr double kLeastShare = 0.01;  // of the source's area
-constexpr double kLeastArea = 5;      // m²: smaller ones are pipes and balusters
 constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
 

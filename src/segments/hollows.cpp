@@ -8,16 +8,13 @@
 #include <algorithm>
 
 #include "elements/elements.h"
+#include "parameters.h"
 #include "rules.h"
 
 namespace colod {
 namespace {
 
-constexpr double kMostOthers = 2.0;   // of the hollow's area: planes of others in its segment
-constexpr double kShaftReach = 0.25;  // metres around a shaft: planes there are its own
-constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps shafts: two
-                                // windows' reveals look like one
-constexpr double kSameHollow = 0.5;  // of its area that an earlier one has taken: it is that one
+using namespace parameters::segments;
 
 double area_of(const Planes& planes, const std::vector<int>& which) {
   double sum = 0;
@@ -110,14 +107,16 @@ void part_shaft(const Planes& planes, const HitGrid& grid, const Hollow& shaft,
 
 }  // namespace
 
-void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_area,
+void give_to_hollows(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
                      SegmentDraft& draft) {
+  const bool has_forms = options.rules.has(Rule::kForms);
+  if (!has_forms && !options.rules.has(Rule::kShafts)) return;
   std::vector<int> every(planes.planes.size());
   for (std::size_t p = 0; p < every.size(); ++p) every[p] = static_cast<int>(p);
   std::vector<char> is_taken(planes.planes.size(), 0);
   const std::vector<Hollow> hollows = find_hollows(planes, every);
   for (const Hollow& hollow : hollows) {
-    if (!may_own(planes, hollow, alcove_area)) continue;
+    if (!has_forms || !may_own(planes, hollow, options.alcove_area)) continue;
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
     for (const int p : hollow.planes)
       if (!is_taken[p]) free.push_back(p);
@@ -150,7 +149,8 @@ void give_to_hollows(const Planes& planes, const HitGrid& grid, double alcove_ar
       }
   }
   for (const Hollow& hollow : hollows)  // others may have taken a shaft's walls: a dormer's cheeks
-    if (hollow.kind == Hollow::Kind::kShaft) part_shaft(planes, grid, hollow, is_taken, draft);
+    if (options.rules.has(Rule::kShafts) && hollow.kind == Hollow::Kind::kShaft)
+      part_shaft(planes, grid, hollow, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 SegmentOptions coarse(bool is_paper = false, int ns = 32) {
   SegmentOptions options;
-  options.is_paper = is_paper;
+  options.rules = is_paper ? RuleSet::none() : RuleSet::all();
   options.visibility.ns = ns;
   options.visibility.nr = 72;
   return options;
