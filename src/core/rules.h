@@ -15,6 +15,7 @@ enum class Rule : std::uint8_t {
   kHidden,
   kFloaters,
   kRoundSides,
+  kEllipses,
   kNoise,
   kFewPlanes,
   kSmoothNormals,

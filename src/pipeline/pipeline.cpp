@@ -330,8 +330,9 @@ void mesh_building(Building& b, const Options& options) {
   if (!b.failure.empty()) return;
   try {
     Sight sight(b.planes);
-    const std::vector<RoundShape> shapes =
-        options.rules.has(Rule::kRoundSides) ? find_rounds(b.source) : std::vector<RoundShape>();
+    const std::vector<RoundShape> shapes = options.rules.has(Rule::kRoundSides)
+                                               ? find_rounds(b.source, options.rules)
+                                               : std::vector<RoundShape>();
     mark_sides(shapes, b.planes);
     std::vector<int> planes;
     for (int k = 0; k < options.layers; ++k) {

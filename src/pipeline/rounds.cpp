@@ -70,7 +70,8 @@ int plane_of(const Planes& planes, const RoundShape::Side& side) {
 /// A flat plane that ends a row of the shape: a gallery's floor, what is under an eave.
 bool is_cap(const Plane& plane, const RoundShape& shape, const std::vector<char>& is_row_in) {
   if (std::abs(plane.normal.dot(shape.axis)) < kCapCosine) return false;
-  const double height = shape.axis.dot(plane.centroid - shape.center);
+  const Eigen::Matrix3d back = shape.stretch.inverse();
+  const double height = shape.axis.dot(back * plane.centroid - shape.center);
   double radius = -1;
   for (std::size_t r = 0; r < is_row_in.size(); ++r)
     for (const Vec2& end : {shape.rows[r].from, shape.rows[r].to})
@@ -78,7 +79,7 @@ bool is_cap(const Plane& plane, const RoundShape& shape, const std::vector<char>
         radius = std::max(radius, std::abs(end.x()) / std::cos(shape.step / 2));
   return radius >= 0 && std::all_of(plane.outline.vertices.begin(), plane.outline.vertices.end(),
                                     [&](const Vec3& v) {
-                                      const Vec3 x = v - shape.center;
+                                      const Vec3 x = back * v - shape.center;
                                       return shape.axis.cross(x).norm() < radius + kCapReach;
                                     });
 }

@@ -88,7 +88,7 @@ std::vector<std::pair<int, int>> neighboring_regions(const Items& items,
 
 // round.cpp
 /// A region for each side of the source's round shapes, on the shape's own planes.
-std::vector<Region> round_regions(const Items& items);
+std::vector<Region> round_regions(const Items& items, const RuleSet& rules);
 
 // paper.cpp
 std::vector<Region> grow_with_cgal(const Items& items, const PlaneOptions& options);

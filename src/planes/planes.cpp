@@ -163,7 +163,7 @@ std::vector<Region> find_regions(Items& items, const PlaneOptions& options, Plan
   const double total = used_area(items);
   const Box box = used_box(items);
   std::vector<Region> round;
-  if (options.rules.has(Rule::kRoundSides)) round = round_regions(items);
+  if (options.rules.has(Rule::kRoundSides)) round = round_regions(items, options.rules);
   set_used(round, false, items);
   std::vector<Region> regions = flat_regions(items, box, total, options, result);
   set_used(round, true, items);

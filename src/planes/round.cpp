@@ -25,9 +25,9 @@ Region side_region(const Items& items, const RoundShape& shape, const RoundShape
 
 }  // namespace
 
-std::vector<Region> round_regions(const Items& items) {
+std::vector<Region> round_regions(const Items& items, const RuleSet& rules) {
   std::vector<Region> regions;
-  for (const RoundShape& shape : find_rounds(*items.source)) {
+  for (const RoundShape& shape : find_rounds(*items.source, rules)) {
     const bool is_fine = shape.sides.size() <= kMostSides;
     const RoundShape drawn = is_fine ? shape : reduce_round(shape, turn_within(shape, kFinest));
     for (const RoundShape::Side& side : drawn.sides)

@@ -37,6 +37,22 @@ struct RawFile {
   }
 };
 
+/// Faces of fewer than three corners, which readers leave out.
+struct ShortFaces {
+  int count = 0;
+  std::string first;  ///< where: "line 4", "face 7"
+
+  void add(const std::string& place) {
+    if (count++ == 0) first = place;
+  }
+  /// A warning, where there are any.
+  void report(RawFile& raw) const {
+    if (count > 0)
+      raw.warnings.push_back(std::to_string(count) +
+                             " faces with fewer than 3 corners left out, first in " + first);
+  }
+};
+
 /// The lines of a text file with their numbers: comments from `#` on and empty lines skipped,
 /// tokens by blanks. Lines end in LF, CR LF or CR.
 class Lines {

@@ -226,6 +226,7 @@ void read_faces(Body& body, const Element& element, RawFile& raw) {
     if (element.count == 0) return;
     body.fail_here("there is no list `vertex_indices`");
   }
+  ShortFaces short_faces;
   for (long long f = 0; f < element.count; ++f) {
     body.set_place(element, f);
     const int begin = static_cast<int>(raw.corners.size());
@@ -243,11 +244,13 @@ void read_faces(Body& body, const Element& element, RawFile& raw) {
     }
     if (raw.corners.size() - begin < 3) {
       raw.corners.resize(begin);
+      short_faces.add("face " + std::to_string(f));
       continue;
     }
     raw.face_begin.push_back(begin);
     if (object >= 0) raw.face_group.push_back(number);
   }
+  short_faces.report(raw);
 }
 
 }  // namespace

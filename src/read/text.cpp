@@ -182,7 +182,8 @@ RawFile read_obj(const std::string& path, const std::string& bytes) {
   RawFile raw;
   raw.remarks = head_remarks(bytes);
   Numbering groups, objects;
-  int group = -1, object = -1, short_faces = 0, first_short = 0;
+  int group = -1, object = -1;
+  ShortFaces short_faces;
   Lines lines(path, bytes);
   lines.allow_continuation();
   while (lines.next()) {
@@ -196,7 +197,7 @@ RawFile read_obj(const std::string& path, const std::string& bytes) {
             obj_corner(lines, lines.token(), static_cast<int>(raw.points.size())));
       if (raw.corners.size() - begin < 3) {
         raw.corners.resize(begin);
-        if (++short_faces == 1) first_short = lines.line_number();
+        short_faces.add("line " + std::to_string(lines.line_number()));
         continue;
       }
       raw.face_begin.push_back(begin);
@@ -212,10 +213,7 @@ RawFile read_obj(const std::string& path, const std::string& bytes) {
   if (objects.names.empty()) raw.face_part.clear();
   raw.parts = objects.names;
   raw.groups = groups.names;
-  if (short_faces > 0)
-    raw.warnings.push_back(std::to_string(short_faces) +
-                           " faces with fewer than 3 corners left out, first in line " +
-                           std::to_string(first_short));
+  short_faces.report(raw);
   return raw;
 }
 
@@ -243,15 +241,20 @@ RawFile read_off(const std::string& path, const std::string& bytes) {
     raw.points.push_back(read_vec3_across(lines));
     if (has_normals) raw.normals.push_back(read_vec3_across(lines));
   }
+  ShortFaces short_faces;
   for (int f = 0; f < faces; ++f) {
     if (!lines.next())
       lines.fail("truncated: " + std::to_string(f) + " of " + std::to_string(faces) + " faces");
     const int corners = lines.integer();
     if (corners < 0) lines.fail("a face with a negative number of corners");
-    if (corners < 3) continue;
+    if (corners < 3) {
+      short_faces.add("line " + std::to_string(lines.line_number()));
+      continue;
+    }
     raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
     for (int c = 0; c < corners; ++c) raw.corners.push_back(lines.integer_across());
   }
+  short_faces.report(raw);
   return raw;
 }
 

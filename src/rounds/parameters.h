@@ -2,6 +2,7 @@
 // The registry in room `rules` says what each does and why it has its value.
 #pragma once
 
+#include <cstddef>
 #include <numbers>
 
 namespace colod::parameters::rounds {
@@ -22,6 +23,12 @@ constexpr double kAlike = 0.98;        // cosine of a narrow face's normal and i
 constexpr double kSteepest = 0.01;     // of a normal across the axis: less has no column
 constexpr double kHardlyFewer = 0.98;  // of the faces that a looser tolerance places
 constexpr double kJoined = 0.02;       // metres between the ends of rows that follow each other
+
+// Of what is elliptical, which is round in a plan that is narrowed.
+constexpr std::size_t kLeastCorners = 12;  // of the plan: a polygon of fewer sides is not round
+constexpr double kNarrowest = 0.25;        // of the longer axis: tolerances grow as it shrinks
+constexpr double kRound = 0.995;           // a circle
+constexpr double kSameStretch = 0.002;     // between two stretches
 
 }  // namespace colod::parameters::rounds
 

@@ -1,6 +1,7 @@
 // What the files about round shapes share. Not for other rooms.
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -26,6 +27,17 @@ struct Axes {
   Vec3 u, v, w;
   Vec2 flat(const Vec3& x) const { return {u.dot(x), v.dot(x)}; }
 };
+
+/// An edge between two faces that bends a little.
+struct BentEdge {
+  Vec3 middle, along;
+  std::array<int, 2> faces;
+};
+
+/// The stretches (RoundShape::stretch) of what may be elliptical about an upright axis: of curved
+/// pieces, the largest first, by how their plan spreads. Few of them.
+std::vector<Eigen::Matrix3d> find_stretches(const Facets& facets,
+                                            const std::vector<BentEdge>& edges);
 
 /// Finds the rows of a shape whose columns are known, and the faces of each side: rows that one of
 /// `founders` lies on. False: there are none.

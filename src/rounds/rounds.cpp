@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -27,12 +28,6 @@ constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// An edge between two faces that bends a little.
-struct BentEdge {
-  Vec3 middle, along;
-  std::array<int, 2> faces;
-};
 
 std::vector<BentEdge> bent_edges(const Facets& facets) {
   struct Use {
@@ -269,29 +264,60 @@ bool is_substantial(const RoundShape& shape, double total) {
   return area >= std::max(kLeastArea, kLeastShare * total);
 }
 
+/// The shapes about axes of one direction; their faces are taken.
+std::vector<RoundShape> find_along(const Vec3& direction, const std::vector<BentEdge>& edges,
+                                   Facets& facets) {
+  std::vector<RoundShape> shapes;
+  for (int trial = 0; trial < kMostShapes; ++trial) {
+    const Axes axes = axes_of(direction);
+    std::vector<int> founders;
+    RoundShape shape = around(axes, meridians_along(facets, edges, axes), founders);
+    if (shape.columns == 0 || !find_sides(facets, founders, shape)) break;
+    for (const RoundShape::Side& s : shape.sides)
+      for (const int f : s.faces) facets.is_taken[f] = 1;
+    if (is_substantial(shape, facets.total_area)) shapes.push_back(std::move(shape));
+  }
+  return shapes;
+}
+
+/// Upright shapes that a stretch makes elliptical: in the mesh without it they are round, all the
+/// way, since a part of nearly any curve is nearly round.
+std::vector<RoundShape> find_stretched(const Eigen::Matrix3d& stretch, Facets& facets) {
+  Mesh mesh = facets.mesh;
+  const Eigen::Matrix3d back = stretch.inverse();
+  for (Vec3& v : mesh.vertices) v = back * v;
+  Facets without = collect_facets(mesh);
+  without.is_taken = facets.is_taken;
+  std::vector<RoundShape> shapes = find_along(Vec3::UnitZ(), bent_edges(without), without);
+  std::erase_if(shapes, [](const RoundShape& s) { return !s.is_closed; });
+  for (RoundShape& shape : shapes) {
+    shape.stretch = stretch;
+    for (RoundShape::Side& side : shape.sides) {
+      side.area = 0;
+      for (const int f : side.faces) side.area += facets.area[f], facets.is_taken[f] = 1;
+    }
+  }
+  return shapes;
+}
+
 }  // namespace
 }  // namespace rounds
 
-std::vector<RoundShape> find_rounds(const Source& source) {
+std::vector<RoundShape> find_rounds(const Source& source, const RuleSet& rules) {
   using namespace rounds;
   std::vector<RoundShape> shapes;
   if (!source.is_mesh()) return shapes;
   Facets facets = collect_facets(source.mesh);
   const std::vector<BentEdge> edges = bent_edges(facets);
   if (edges.size() < kLeastMeridians || edges.size() > kMostEdges) return shapes;
-  std::vector<Vec3> directions = level_directions(edges);
-  directions.insert(directions.begin(), Vec3::UnitZ());
-  for (const Vec3& direction : directions)
-    for (int trial = 0; trial < kMostShapes; ++trial) {
-      const Axes axes = axes_of(direction);
-      std::vector<int> founders;
-      RoundShape shape = around(axes, meridians_along(facets, edges, axes), founders);
-      if (shape.columns == 0 || !find_sides(facets, founders, shape)) break;
-      const bool is_kept = is_substantial(shape, facets.total_area);
-      for (const RoundShape::Side& s : shape.sides)
-        for (const int f : s.faces) facets.is_taken[f] = 1;
-      if (is_kept) shapes.push_back(std::move(shape));
-    }
+  const auto add = [&](std::vector<RoundShape> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(shapes));
+  };
+  if (rules.has(Rule::kEllipses))
+    for (const Eigen::Matrix3d& stretch : find_stretches(facets, edges))
+      add(find_stretched(stretch, facets));
+  add(find_along(Vec3::UnitZ(), edges, facets));
+  for (const Vec3& direction : level_directions(edges)) add(find_along(direction, edges, facets));
   return shapes;
 }
 

@@ -1,19 +1,24 @@
 // Between `read` and `planes`: what a source draws as flat sides around an axis: domes, onion
 // spires, cones, round towers, apses, barrel vaults.
 //
-// A round shape is a profile of straight rows, turned about an axis in equal steps. Where a row and
-// a column meet lies one flat side. It is known as exactly as its file, and fewer rows and columns
-// make the same shape regular again.
+// A round shape is a profile of straight rows, turned about an axis in equal steps, and then
+// perhaps narrowed along one level direction: an elliptical dome. Where a row and a column meet
+// lies one flat side. It is known as exactly as its file, and fewer rows and columns make the same
+// shape regular again.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/rules.h"
 
 namespace colod {
 
 struct RoundShape {
+  /// What is said below, turned about the axis, becomes the source's by it: identity, or narrowed
+  /// along one level direction, of which the longer axis keeps its length.
+  Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
   Vec3 center = Vec3::Zero();   ///< on the axis
   Vec3 axis = Vec3::UnitZ();    ///< unit
   Vec3 across = Vec3::UnitX();  ///< unit, across the axis: where column 0 looks
@@ -37,16 +42,17 @@ struct RoundShape {
   };
   std::vector<Side> sides;  ///< by row and column
 
-  Vec3 direction(int column) const;
-  Vec3 normal(int row, int column) const;
+  Vec3 direction(int column) const;        ///< before the stretch
+  Vec3 normal(int row, int column) const;  ///< unit, in the source
   double offset(int row, int column) const;
-  /// Of a whole side, counter-clockwise seen from outside; two of them are one at an apex.
+  /// In the source, of a whole side, counter-clockwise seen from outside; two of them are one at an
+  /// apex.
   std::array<Vec3, 4> corners(int row, int column) const;
 };
 
 /// The round shapes of a mesh that is exact to the millimetre, largest evidence first; each face is
 /// in one at most. None in clouds and scans. Deterministic; about 1 s for 50,000 curved edges.
-std::vector<RoundShape> find_rounds(const Source& source);
+std::vector<RoundShape> find_rounds(const Source& source, const RuleSet& rules = RuleSet::all());
 
 /// The same shape of fewer sides: no two neighbours turn by much more than `turn` radians. Closed
 /// shapes keep their cross-section's area, open ones their ends. A side has the faces of those that

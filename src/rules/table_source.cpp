@@ -152,10 +152,35 @@ RuleInfo round_sides_rule() {
       .made_on = {}};
 }
 
+RuleInfo ellipses_rule() {
+  return {
+      .rule = Rule::kEllipses,
+      .id = "rounds.ellipses",
+      .title = "what is elliptical is round in a narrowed plan",
+      .sees = "Curved pieces of an exact mesh whose plan spreads farther one way than across.",
+      .does =
+          "Looks for closed round shapes about an upright axis in the mesh without that stretch.",
+      .paper = "The paper knows planes only, grown one by one.",
+      .reason =
+          "The sides of an elliptical dome had chips between them as those of a round one had.",
+      .parameters = {{"least_corners", "", static_cast<double>(rounds::kLeastCorners),
+                      "of the plan: a polygon of fewer sides is not round"},
+                     {"narrowest", "", rounds::kNarrowest,
+                      "of the longer axis: tolerances grow as it shrinks"},
+                     {"round", "", rounds::kRound,
+                      "of the longer axis: from there on it is a circle"},
+                     {"same", "", rounds::kSameStretch, "between two stretches"}},
+      .needs = {Rule::kRoundSides},
+      .test =
+          "rounds/rounds: elliptical domes are round ones that were narrowed, however they are "
+          "turned",
+      .made_on = {}};
+}
+
 }  // namespace
 
 std::vector<RuleInfo> source_rules() {
-  return {ground_rule(), hidden_rule(), floaters_rule(), round_sides_rule()};
+  return {ground_rule(), hidden_rule(), floaters_rule(), round_sides_rule(), ellipses_rule()};
 }
 
 }  // namespace colod::rules

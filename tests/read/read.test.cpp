@@ -169,6 +169,17 @@ TEST_CASE("faces of fewer than three corners are counted, degenerate ones kept")
   CHECK(s.mesh.faces.size() == 2);
   REQUIRE(s.warnings.size() == 1);
   CHECK_THAT(s.warnings[0], Contains("line 4"));
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+  const Source off = only(read_bytes("a.off", "OFF\n3 2 0\n" + corners + "2 0 1\n3 0 1 2\n"));
+  REQUIRE(off.warnings.size() == 1);
+  CHECK_THAT(off.warnings[0], Contains("1 faces") && Contains("line 6"));
+  const Source ply = only(read_bytes(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n" +
+          corners + "3 0 1 2\n2 0 1\n1 0\n"));
+  REQUIRE(ply.warnings.size() == 1);
+  CHECK_THAT(ply.warnings[0], Contains("2 faces") && Contains("face 1"));
 }
 
 TEST_CASE("concave polygons keep their area and winding") {

@@ -61,6 +61,29 @@ TEST_CASE("spires, towers and vaults are round, too") {
   CHECK(std::abs(vault[0].axis.y()) == Approx(1));
 }
 
+TEST_CASE("elliptical domes are round ones that were narrowed, however they are turned") {
+  for (const double narrow : {0.95, 0.75, 0.5, 0.35})
+    for (const double turn : {0.0, 0.4}) {
+      INFO(narrow << " of the length, turned by " << turn);
+      Mesh mesh = dome_mesh(8, 32, 9, 4, 0.05);
+      for (Vec3& v : mesh.vertices) v.y() *= narrow;
+      mesh = join(moved(mesh, turn, {20, -30, 5}), gable_house(12, 9, 6, 4));
+      const std::vector<RoundShape> shapes = rounds_of(mesh);
+      REQUIRE(shapes.size() == 1);
+      CHECK(shapes[0].is_closed);
+      CHECK(shapes[0].sides.size() == 320);
+      CHECK(farthest_corner(mesh, shapes[0]) < 0.003);
+      const RoundShape fewer = reduce_round(shapes[0], 0.8);
+      CHECK(fewer.columns == 8);
+      double most = 0;
+      for (const RoundShape::Side& side : fewer.sides)
+        for (const Vec3& corner : fewer.corners(side.row, side.column))
+          most = std::max(most, std::abs(fewer.normal(side.row, side.column).dot(corner) -
+                                         fewer.offset(side.row, side.column)));
+      CHECK(most < 1e-9);
+    }
+}
+
 TEST_CASE("millimetres of a file do not hide a dome") {
   Mesh mesh = dome_mesh(6, 32, 9, 4);
   for (Vec3& v : mesh.vertices) v = (1000 * v).array().round() / 1000;
