@@ -96,7 +96,7 @@ std::vector<PlacedPart> place_by_segments(const Scene& scene, const Truth& truth
     const std::vector<int> segment = segments_of_parts(b, *t);
     for (std::size_t i = 0; i < t->parts.size(); ++i) {
       PlacedPart p;
-      p.building = t->name, p.type = t->parts[i].type, p.depth = t->parts[i].depth;
+      p.building = t->name, p.kind = t->parts[i].kind, p.depth = t->parts[i].depth;
       p.level = t->parts[i].level;
       p.is_seen = segment[i] >= 0;
       p.present.assign(layers, 0);
@@ -204,7 +204,7 @@ void write_segments(const Scene& scene, const Truth& truth, const std::string& p
     if (t) {
       const std::vector<int> segment = segments_of_parts(b, *t);
       for (std::size_t i = 0; i < segment.size(); ++i)
-        if (segment[i] >= 0) type[segment[i]] = t->parts[i].type;
+        if (segment[i] >= 0) type[segment[i]] = name_of(t->parts[i].kind);
     }
     std::vector<double> share(b.descriptors.size(), 0);
     for (const Coverage& c : b.segments.coverage)
@@ -249,10 +249,10 @@ void print(const std::vector<Result>& results) {
   std::map<std::string, bool> types;
   for (const Result& r : results)
     for (const auto* list : {&r.by_mesh, &r.by_segment})
-      for (const TypeConsistency& t : *list) types[t.type] = true;
+      for (const TypeConsistency& t : *list) types[name_of(t.kind)] = true;
   const auto find = [](const std::vector<TypeConsistency>& list, const std::string& type) {
     for (const TypeConsistency& t : list)
-      if (t.type == type) return t;
+      if (name_of(t.kind) == type) return t;
     return TypeConsistency{};
   };
   for (const auto& [type, unused] : types)

@@ -76,12 +76,12 @@ std::vector<Lost> lost_parts(const Scene& scene, const Truth& truth, const Setti
     for (PlacedPart& p : place_parts(b, b.source, truth)) placed.push_back(std::move(p));
   std::vector<Lost> lost;
   for (const TypeConsistency& t : tally_parts(placed, s.options.layers)) {
-    const bool is_asked = s.types.empty()
-                              ? t.depth >= kLeastRelief
-                              : std::find(s.types.begin(), s.types.end(), t.type) != s.types.end();
+    const bool is_asked = s.types.empty() ? t.depth >= kLeastRelief
+                                          : std::find(s.types.begin(), s.types.end(),
+                                                      name_of(t.kind)) != s.types.end();
     if (!is_asked) continue;
     for (const PlacedPart& p : placed)
-      if (p.type == t.type && p.is_seen && p.first != t.majority_layer)
+      if (p.kind == t.kind && p.is_seen && p.first != t.majority_layer)
         lost.push_back({p, t.majority_layer});
   }
   return lost;
@@ -168,7 +168,7 @@ void add_pictures(const Building& b, const Lost& lost, int width, Sheet& sheet) 
   add_frame(box, bar, shown);
   const PlacedPart& p = lost.part;
   sheet.images.push_back(render_preview(shown.mesh, view, {}, shown.colors));
-  sheet.captions.push_back(p.building + " " + p.type + " " + std::to_string(p.instance) +
+  sheet.captions.push_back(p.building + " " + name_of(p.kind) + " " + std::to_string(p.instance) +
                            (p.first < 0 ? ": on none" : ": on " + std::to_string(p.first)) +
                            ", most on " + std::to_string(lost.most));
   const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
@@ -232,7 +232,7 @@ void print_row(const Building& b, const Lost& lost) {
   for (const double share : lost.part.near)
     near += text("%s%.0f", near.empty() ? "" : " / ", 100 * share);
   std::printf("| %s %s %d | %s | %d | %s | %.1f | %.1f | %.1f | %s | %s |\n",
-              lost.part.building.c_str(), lost.part.type.c_str(), lost.part.instance,
+              lost.part.building.c_str(), name_of(lost.part.kind).c_str(), lost.part.instance,
               lost.part.first < 0 ? "none" : std::to_string(lost.part.first).c_str(), lost.most,
               near.c_str(), fate.area, fate.no_plane, fate.foreign,
               fate.segment < 0 ? "none"

@@ -77,7 +77,7 @@ json run(const Settings& settings) {
   for (const PlacedPart& p : parts)
     if (settings.has_parts)
       result["parts"].push_back({{"building", p.building},
-                                 {"type", p.type},
+                                 {"type", name_of(p.kind)},
                                  {"instance", p.instance},
                                  {"level", p.level},
                                  {"depth", p.depth},

@@ -353,7 +353,7 @@ ChurchBody add_church_body(House& house, const RoofShape& shape, double tower_wi
   const Profile p(shape, across);
   ChurchDrawing church{
       house.solid, length, across, p, y0, y1, p.zr + p.thickness - shape.slope * (across / 2 - y0)};
-  const int tower = house.new_part("tower", "", tower_width);
+  const int tower = house.new_part(ElementKind::kSpire, "", tower_width);
   ChurchBody body;
   church.add(
       {{0, 0, 0}, {0, y0, 0}, {0, y1, 0}, {0, across, 0}, {length, across, 0}, {length, 0, 0}},

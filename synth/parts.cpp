@@ -51,8 +51,8 @@ void add_panes(Solid& solid, int frame, int panes, int object) {
 
 /// A leaf with two panels.
 void add_opening(House& house, int facet, const Rect& rect, const DoorModel& model,
-                 const std::string& type) {
-  const int part = house.new_part(type, model.name, model.reveal);
+                 ElementKind kind) {
+  const int part = house.new_part(kind, model.name, model.reveal);
   const int leaf = house.solid.extrude(facet, rect.ring(), -model.reveal, part).cap;
   add_panes(house.solid, leaf, model.width > 1.4 ? 2 : 1, part);
 }
@@ -95,13 +95,13 @@ Catalogue::Catalogue(std::uint64_t seed) {
 
 House::House(std::string style_name, std::uint64_t seed)
     : style(std::move(style_name)), random(seed) {
-  new_part("body", "", 0);
-  new_part("roof", "", 0);
+  new_part(ElementKind::kPlain, "", 0);
+  new_part(ElementKind::kRoof, "", 0);
 }
 
-int House::new_part(const std::string& type, const std::string& model, double relief) {
+int House::new_part(ElementKind kind, const std::string& model, double relief) {
   SynthPart part;
-  part.type = type;
+  part.kind = kind;
   part.model = model;
   part.instance = static_cast<int>(parts.size());
   part.depth = relief;
@@ -118,7 +118,7 @@ bool add_window(House& house, int facet, double u, double v, const WindowModel& 
                      v - kGap};
   if (model.has_sill) all = {sill.u0, sill.v0, sill.u1, rect.v1};
   if (!solid.fits(facet, all, kMargin)) return false;
-  const int part = house.new_part("window", model.name, model.reveal);
+  const int part = house.new_part(ElementKind::kWindow, model.name, model.reveal);
   const Ring ring = model.is_arched ? arch(rect) : rect.ring();
   const int frame = solid.extrude(facet, ring, -model.reveal, part).cap;
   if (model.panes > 0 && !model.is_arched) add_panes(solid, frame, model.panes, part);
@@ -130,7 +130,7 @@ bool add_door(House& house, int facet, double u, double v, const DoorModel& mode
   const Rect rect = {u - model.width / 2, v, u + model.width / 2, v + model.height};
   if (!house.solid.fits(facet, {rect.u0, rect.v0 + kMargin - 0.05, rect.u1, rect.v1}, kMargin))
     return false;
-  add_opening(house, facet, rect, model, "door");
+  add_opening(house, facet, rect, model, ElementKind::kDoor);
   return true;
 }
 
@@ -143,7 +143,7 @@ bool add_balcony(House& house, int facet, double u, double v, const BalconyModel
   const Rect opening = {u - door.width / 2, v + kGap, u + door.width / 2, v + kGap + door.height};
   const Rect all = {slab.u0, slab.v0, slab.u1, opening.v1};
   if (!solid.fits(facet, all, kMargin)) return false;
-  const int part = house.new_part("balcony", model.name, depth);
+  const int part = house.new_part(ElementKind::kBalcony, model.name, depth);
   const int top = solid.extrude(facet, slab.ring(), depth, part).sides[2];
   const double a = slab.u0 + kGap, b = slab.u1 - kGap, front = depth - kGap;
   const Ring parapet = on_floor(solid, facet, v,
@@ -157,7 +157,7 @@ bool add_balcony(House& house, int facet, double u, double v, const BalconyModel
                                  {a + kWall, kGap}},
                                 top);
   solid.extrude(top, parapet, model.parapet, part);
-  add_opening(house, facet, opening, door, "door");
+  add_opening(house, facet, opening, door, ElementKind::kDoor);
   solid.facet(facet).reserved.push_back(all);
   return true;
 }
@@ -169,7 +169,7 @@ bool add_loggia(House& house, int facet, double u, double v, const LoggiaModel& 
   const Rect rect = {u - model.width / 2, v, u + model.width / 2, v + model.height};
   if (!solid.fits(facet, {rect.u0 - kFromCorner, rect.v0, rect.u1 + kFromCorner, rect.v1}, kMargin))
     return false;
-  const int part = house.new_part("recess", model.name, model.depth);
+  const int part = house.new_part(ElementKind::kLoggia, model.name, model.depth);
   const Attached recess = solid.extrude(facet, rect.ring(), -model.depth, part);
   const double a = rect.u0 + kGap, b = rect.u1 - kGap;
   const Ring strip = on_floor(
@@ -179,7 +179,7 @@ bool add_loggia(House& house, int facet, double u, double v, const LoggiaModel& 
   add_opening(house, recess.cap,
               {model.width / 2 - door.width / 2, kGap, model.width / 2 + door.width / 2,
                kGap + door.height},
-              door, "door");
+              door, ElementKind::kDoor);
   return true;
 }
 
@@ -188,7 +188,7 @@ bool add_bay(House& house, int facet, double u, double v, double height, double 
   Solid& solid = house.solid;
   const Rect rect = {u - model.width / 2, v, u + model.width / 2, v + height};
   if (!solid.fits(facet, rect, 0.2)) return false;
-  const int part = house.new_part("bay", model.name, model.depth);
+  const int part = house.new_part(ElementKind::kBay, model.name, model.depth);
   const Rect front = {rect.u0 + model.splay, rect.v0, rect.u1 - model.splay, rect.v1};
   const int cap = solid.extrude(facet, rect.ring(), model.depth, part, front.ring()).cap;
   const double middle = solid.facet(cap).width() / 2;
@@ -212,7 +212,7 @@ bool add_dormer(House& house, int facet, double u, double v, const DormerModel& 
   const double u0 = u - model.width / 2, u1 = u + model.width / 2;
   if (!(eaves > 0) || !solid.fits(facet, {u0, v, u1, v + reach}, 0.25)) return false;
 
-  const int part = house.new_part("dormer", model.name, eaves);
+  const int part = house.new_part(ElementKind::kDormer, model.name, eaves);
   const Vec3 f0 = roof.at(u0, v), f1 = roof.at(u1, v), up = Vec3::UnitZ();
   const Vec3 e0 = f0 + model.height * up, e1 = f1 + model.height * up;
   const Vec3 back = eaves * (inward + slope * up), b0 = f0 + back, b1 = f1 + back;
@@ -249,7 +249,7 @@ bool add_chimney(House& house, int facet, double u, double v, const ChimneyModel
   const double along = model.depth / std::max(0.2, std::hypot(roof.v.x(), roof.v.y()));
   const Rect rect = {u - model.width / 2, v, u + model.width / 2, v + along};
   if (!solid.fits(facet, rect, 0.2)) return false;
-  const int part = house.new_part("chimney", model.name, model.height);
+  const int part = house.new_part(ElementKind::kChimney, model.name, model.height);
   const double top = roof.at(rect.u0, rect.v1).z() + model.height;
   std::vector<Vec3> cap;
   for (const Vec2& p : rect.ring()) {
@@ -267,7 +267,7 @@ bool add_roof_window(House& house, int facet, double u, double v) {
   constexpr double kWidth = 0.78, kHeight = 1.18, kRelief = 0.08;
   const Rect rect = {u - kWidth / 2, v, u + kWidth / 2, v + kHeight};
   if (!house.solid.fits(facet, rect, 0.2)) return false;
-  const int part = house.new_part("window", "roof_window", kRelief);
+  const int part = house.new_part(ElementKind::kWindow, "roof_window", kRelief);
   const int frame = house.solid.extrude(facet, rect.ring(), kRelief, part).cap;
   add_panes(house.solid, frame, 1, part);
   return true;
@@ -277,7 +277,7 @@ bool add_stairhead(House& house, int facet, double u, double v) {
   constexpr double kWidth = 3.4, kDepth = 4.2, kHeight = 2.6;
   const Rect rect = {u - kWidth / 2, v - kDepth / 2, u + kWidth / 2, v + kDepth / 2};
   if (!house.solid.fits(facet, rect, 0.3)) return false;
-  const int part = house.new_part("stairhead", "stairhead", kHeight);
+  const int part = house.new_part(ElementKind::kStairhead, "stairhead", kHeight);
   house.solid.extrude(facet, rect.ring(), kHeight, part);
   return true;
 }

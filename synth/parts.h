@@ -83,7 +83,7 @@ struct House {
   std::vector<SynthPart> parts;
   double width = 0, depth = 0;  ///< footprint in its frame: x in [0, width], y in [0, depth] or so
 
-  int new_part(const std::string& type, const std::string& model, double relief);
+  int new_part(ElementKind kind, const std::string& model, double relief);
   template <typename Model>
   const Model& choose(const std::vector<Model>& models) {
     return models[random.pick(static_cast<int>(models.size()))];

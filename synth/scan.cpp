@@ -282,7 +282,7 @@ void scan_building(SynthBuilding& building, const Vec3& to_street, const RayScen
   std::erase_if(samples, [](const Sample& s) { return s.to_camera.isZero(); });
   drop_discs(samples, options.density, hash);
   std::vector<char> is_glass;
-  for (const SynthPart& p : building.parts) is_glass.push_back(p.type == "window");
+  for (const SynthPart& p : building.parts) is_glass.push_back(p.kind == ElementKind::kWindow);
   add_noise(samples, is_glass, options.noise, box.center(), hash);
   add_floaters(samples, options.density, hash);
   const std::vector<Face> faces = reconstruct(samples, 3 / std::sqrt(options.density));

@@ -184,7 +184,7 @@ House make_shop(std::uint64_t seed, const Catalogue& catalogue) {
                                       .thickness = 0.25},
                                      r.size(1.15, 1.3));
   Facade facade = make_facade(r, floors, floor_height);
-  const int part = house.new_part("recess", "shopfront", kRecess);
+  const int part = house.new_part(ElementKind::kLoggia, "shopfront", kRecess);
   const Rect front = {kPier, kThreshold, house.width - kPier, kShopHeight};
   const int shop = house.solid.extrude(body.front, front.ring(), -kRecess, part).cap;
   const double width = house.solid.facet(shop).width();

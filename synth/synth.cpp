@@ -108,7 +108,8 @@ void measure_parts(SynthBuilding& building, const Mesh& local) {
       building.parts[part].box.extend(building.source.mesh.vertices[v]);
     }
   for (SynthPart& part : building.parts) {
-    const bool is_main = part.type == "body" || part.type == "roof" || part.type == "tower";
+    const bool is_main = part.kind == ElementKind::kPlain || part.kind == ElementKind::kRoof ||
+                         part.kind == ElementKind::kSpire;
     const bool is_large =
         part.depth >= kLargeRelief && local_box[part.instance].size().prod() >= kLargeVolume;
     part.level = is_main ? 0 : is_large ? 1 : 2;
@@ -179,7 +180,7 @@ std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthO
     building["parts"] = nlohmann::ordered_json::array();
     for (const SynthPart& p : b.parts)
       building["parts"].push_back(
-          {{"type", p.type},
+          {{"type", name_of(p.kind)},
            {"model", p.model},
            {"instance", p.instance},
            {"level", p.level},
@@ -205,7 +206,8 @@ std::string synth_obj(const SynthBuilding& building) {
   }
   for (std::size_t part = 0; part < faces_of.size(); ++part) {
     if (faces_of[part].empty()) continue;
-    const std::string type = part < building.parts.size() ? building.parts[part].type : "floater";
+    const std::string type =
+        part < building.parts.size() ? name_of(building.parts[part].kind) : "floater";
     text += "g " + type + "__" + std::to_string(part) + "\n";
     for (int f : faces_of[part]) {
       const Face& c = mesh.faces[f];

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/element_kind.h"
 #include "core/geometry.h"
 
 namespace colod {
@@ -20,8 +21,7 @@ struct SynthOptions {
 
 /// One part of a building: a window, a balcony, a dormer…
 struct SynthPart {
-  std::string type;   ///< body, roof, tower, window, door, balcony, dormer, chimney, recess,
-                      ///< bay, stairhead
+  ElementKind kind = ElementKind::kPlain;  ///< kSpire: a church's tower
   std::string model;  ///< the catalogue's entry; equal in all buildings where the part repeats,
                       ///< size and all. Empty for body, roof and tower
   int instance = 0;   ///< its number within the building = the face's object number
@@ -47,7 +47,7 @@ std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options = {});
 /// The ground-truth file (JSON text), written beside the meshes as truth.json.
 std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthOptions& options);
 
-/// A building as a file, in world coordinates. OBJ text has a group `<type>__<instance>` for each
+/// A building as a file, in world coordinates. OBJ text has a group `<kind>__<instance>` for each
 /// part; binary PLY has double coordinates and an int face property `object`.
 std::string synth_obj(const SynthBuilding& building);
 std::string synth_ply(const SynthBuilding& building);

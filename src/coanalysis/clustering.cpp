@@ -194,19 +194,20 @@ void place_flat(const std::vector<Descriptor>& segments, const std::vector<int>&
   }
 }
 
-// What is of a form is of a kind whatever its size: all trays, all niches, all bays, all dormers
-// and all recesses go to the layer on which most of them are, the coarsest of equals. The votes are
+// What is of a kind is so whatever its size: all balconies, all loggias, all bays, all dormers and
+// all windows go to the layer on which most of them are, the coarsest of equals. The votes are
 // those of the scene, or of a prior that knows the kind.
-void settle_forms(const std::vector<Descriptor>& segments, const std::vector<Descriptor>& voters,
+void settle_kinds(const std::vector<Descriptor>& segments, const std::vector<Descriptor>& voters,
                   const std::vector<int>& layer_of_voter, int layers, std::vector<int>& layer) {
-  for (const Form form : {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kRecess}) {
+  for (const ElementKind kind : {ElementKind::kBalcony, ElementKind::kLoggia, ElementKind::kDormer,
+                                 ElementKind::kBay, ElementKind::kWindow}) {
     std::vector<int> votes(layers, 0);
     for (std::size_t v = 0; v < voters.size(); ++v)
-      if (voters[v].form == form) ++votes[layer_of_voter[v]];
+      if (voters[v].kind == kind) ++votes[layer_of_voter[v]];
     const auto most = std::max_element(votes.begin(), votes.end());
     if (*most == 0) continue;
     for (std::size_t s = 0; s < segments.size(); ++s)
-      if (segments[s].form == form) layer[s] = static_cast<int>(most - votes.begin());
+      if (segments[s].kind == kind) layer[s] = static_cast<int>(most - votes.begin());
   }
 }
 
@@ -243,8 +244,8 @@ Clustering classify_segments(const std::vector<Descriptor>& segments, const Prio
   std::vector<int> layer_of_voter;
   for (const auto& [descriptor, layer] : known)
     voters.push_back(*descriptor), layer_of_voter.push_back(layer);
-  if (options.rules.has(Rule::kFormLayers))
-    settle_forms(segments, voters, layer_of_voter, options.layers, result.layer);
+  if (options.rules.has(Rule::kElementLayers))
+    settle_kinds(segments, voters, layer_of_voter, options.layers, result.layer);
   return result;
 }
 
@@ -265,8 +266,8 @@ Clustering cluster_segments(const std::vector<Descriptor>& segments,
   if (!classes.empty()) {
     for (std::size_t i = 0; i < ids.size(); ++i) result.layer[ids[i]] = 1 + classes[i];
     place_flat(segments, flat, ids, classes, k, result.layer);
-    if (options.rules.has(Rule::kFormLayers))
-      settle_forms(segments, segments, std::vector<int>(result.layer), options.layers,
+    if (options.rules.has(Rule::kElementLayers))
+      settle_kinds(segments, segments, std::vector<int>(result.layer), options.layers,
                    result.layer);
     return result;
   }

@@ -61,8 +61,8 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
                               const LayerPlanesOptions& options = {});
 
 /// Larger planes that layer 0 lacks, as they could join it: those of each finer segment that is no
-/// form of its own (Form::kPlain), then those that layer 0's own segments, or none, leave to finer
-/// layers. Rising plane indices; planes under 0.5 % of all area and sets under 1 % stay out.
+/// kind of its own (ElementKind::kPlain), then those that layer 0's own segments, or none, leave to
+/// finer layers. Rising plane indices; planes under 0.5 % of all area and sets under 1 % stay out.
 std::vector<std::vector<int>> spare_planes(const Planes& planes, const Segments& segments,
                                            const std::vector<int>& layer_of_segment,
                                            const std::vector<int>& layer0_planes);

@@ -190,7 +190,7 @@ std::vector<std::vector<int>> spare_planes(const Planes& planes, const Segments&
     const double own = sane_area(planes.planes[p]);
     if (is_in[p] || own < kSpareShare * total) continue;
     const int s = segments.segment_of_plane[p];
-    if (s >= 0 && segments.segments[s].form != Form::kPlain) continue;
+    if (s >= 0 && segments.segments[s].kind != ElementKind::kPlain) continue;
     const std::size_t set = s < 0 || layer_of_segment[s] == 0 ? none : s;
     spares[set].push_back(static_cast<int>(p)), area[set] += own;
   }

@@ -223,7 +223,7 @@ void tidy(const std::vector<SelectionBuilding>& buildings, const Model& model,
   if (options.rules.has(Rule::kAlike)) decide_together(buildings, least, options.eta, shares);
   for (std::size_t i = 0; i < buildings.size(); ++i)
     for (std::size_t s = 0; s < shares[i].size(); ++s)
-      if (buildings[i].segments[s].form == Form::kSpire) shares[i][s] *= kSpireWeight;
+      if (buildings[i].segments[s].kind == ElementKind::kSpire) shares[i][s] *= kSpireWeight;
   std::size_t next = 0;
   for (std::size_t i = 0; i < buildings.size(); ++i) {
     if (buildings[i].segments.empty()) continue;

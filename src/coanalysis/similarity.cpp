@@ -129,7 +129,7 @@ std::array<double, 64> pair_histogram(const std::vector<Triangle>& surface, doub
 
 Descriptor describe(const Planes& planes, const Segment& segment, std::uint64_t seed, int pairs) {
   Descriptor d;
-  d.form = segment.form;
+  d.kind = segment.kind;
   d.area = std::isfinite(segment.area) ? segment.area : 0;
   d.volume = std::isfinite(segment.volume) ? segment.volume : 0;
   std::vector<Triangle> surface = surface_of(planes, segment);

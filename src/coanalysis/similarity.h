@@ -14,11 +14,11 @@ namespace colod {
 struct Descriptor {
   std::array<double, 64>
       d2{};  ///< histogram of pair distances of the whitened surface, range 0..6, sum 1
-  Vec3 eigenvalues = Vec3::Zero();  ///< of the surface's covariance, m², falling
-  double area = 0;                  ///< m²
-  double volume = 0;                ///< m³
-  double extent = 0;                ///< metres: standard deviation along the longest axis
-  Form form = Form::kPlain;         ///< of the segment
+  Vec3 eigenvalues = Vec3::Zero();         ///< of the surface's covariance, m², falling
+  double area = 0;                         ///< m²
+  double volume = 0;                       ///< m³
+  double extent = 0;                       ///< metres: standard deviation along the longest axis
+  ElementKind kind = ElementKind::kPlain;  ///< of the segment
   bool is_flat =
       false;  ///< one plane, or less than 5 cm thick: whitening would make noise its shape
 };

@@ -1,5 +1,7 @@
 // Based on: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
-// Information Processing Letters 9(5), 1979.
+// Information Processing Letters 9(5), 1979; D. Douglas, T. Peucker, "Algorithms for the reduction
+// of the number of points required to represent a digitized line or its caricature", Cartographica
+// 10(2), 1973.
 // Differs: the same under both rules.
 // Notation: none.
 #include "flat.h"
@@ -38,6 +40,16 @@ bool covers(const Outline& outline, const Vec3& normal, const Vec3& x) {
   });
 }
 
+bool covers(const std::array<Vec3, 3>& triangle, const Vec3& normal, const Vec3& x) {
+  int left = 0, right = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& from = triangle[k];
+    const double side = (triangle[(k + 1) % 3] - from).cross(x - from).dot(normal);
+    left += side >= 0, right += side <= 0;
+  }
+  return left == 3 || right == 3;
+}
+
 Mesh outline_soup(const std::vector<Plane>& planes, std::vector<int>* plane_of_triangle) {
   Mesh soup;
   if (plane_of_triangle) plane_of_triangle->clear();
@@ -57,6 +69,13 @@ double median(std::vector<double> values) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+double upper_median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace colod

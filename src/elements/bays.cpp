@@ -4,19 +4,17 @@
 //   its top to the body. Two walls that look away from each other, a front between their ends and a
 //   facade at their feet tell it.
 // Notation: –
+#include "bays.h"
+#include "parameters.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "parts.h"
-
-namespace colod::hollows {
+namespace colod::elements {
 namespace {
 
-constexpr double kAway = -0.4;  // cosine of its sides' normals at most: a splayed bay's cross
-constexpr double kLeastDepth = 0.35, kMostDepth = 1.8;  // metres
-constexpr double kLeastWidth = 1, kMostWidthOfBay = 5;
-constexpr double kLeastHeight = 1.8;
-constexpr double kMostFront = 25;  // m²
+using namespace parameters::elements::bays;
 
 /// The sides, and the direction that the bay looks to.
 struct Sides {
@@ -56,10 +54,8 @@ const Panel* wall_at(const std::vector<Panel>& panels, const Sides& s, const Vec
   return best;
 }
 
-}  // namespace
-
-std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel& a,
-                                  const Panel& b) {
+std::optional<Element> bay_between(const std::vector<Panel>& panels, const Panel& a,
+                                   const Panel& b) {
   const std::optional<Sides> found = sides_of(a, b);
   if (!found) return std::nullopt;
   const Sides& s = *found;
@@ -75,7 +71,7 @@ std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel&
     const double least = 1.5 * std::max(front->plane->area, a.plane->area + b.plane->area);
     if (!wall_at(panels, s, forward, foot, least, std::numeric_limits<double>::infinity()))
       continue;
-    Hollow bay{.kind = Hollow::Kind::kBay, .planes = {a.id, b.id}};
+    Element bay{.kind = ElementKind::kBay, .planes = {a.id, b.id}};
     bay.is_whole = true;
     bay.solid = {{a.plane->normal, a.plane->offset},
                  {b.plane->normal, b.plane->offset},
@@ -98,4 +94,13 @@ std::optional<Hollow> bay_between(const std::vector<Panel>& panels, const Panel&
   return std::nullopt;
 }
 
-}  // namespace colod::hollows
+}  // namespace
+
+std::vector<Element> find_bays(const std::vector<Panel>& panels) {
+  std::vector<Element> found;
+  for (const auto& [a, b] : near_pairs(walls_up_to(panels, kMostCheek), kMostWidth))
+    if (auto element = bay_between(panels, *a, *b)) found.push_back(std::move(*element));
+  return found;
+}
+
+}  // namespace colod::elements

@@ -4,20 +4,17 @@
 //   from the attic: its roof, a ledge on a steeper slope, then tells it. On such a slope its cheeks
 //   are small and often not seen, and are added.
 // Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
+#include "dormers.h"
+#include "parameters.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "parts.h"
-
-namespace colod::hollows {
+namespace colod::elements {
 namespace {
 
-constexpr double kLeastRoof = 0.7, kMostRoof = 8;  // m² of T
-constexpr double kLeastHost = 4;                   // times T's area: R's
-constexpr double kCrossing = 0.966;                // cosine (15°) of T and R at most
-constexpr double kLeastRelief = 0.35;              // metres
-constexpr double kSteep = 0.55;                    // upward part of the normal: 57°
-constexpr double kMostWall = 6;                    // m² of a dormer's wall
+using namespace parameters::elements::dormers;
 
 /// Distances of a panel's outline from a plane.
 Range relief(const Panel& panel, const Plane& host) {
@@ -101,46 +98,46 @@ Dormer dormer_at(const std::vector<Panel>& panels, const std::vector<Ledge>& led
 /// Bounds the dormer by its walls on one side; by a rim as deep or as wide as its roof where no
 /// scan shows one.
 void describe_side(const Dormer& dormer, const Vec3& side, double at, const Range& across,
-                   Hollow& hollow) {
+                   Element& element) {
   bool has_wall = false;
   for (const Panel* w : dormer.walls) {
     if (w->out.dot(side) < 0.8 || std::abs(w->at(side) - at) > kReach) continue;
-    hollow.solid.push_back({w->plane->normal, w->plane->offset + 0.01});
+    element.solid.push_back({w->plane->normal, w->plane->offset + 0.01});
     has_wall = true;
   }
-  if (!has_wall) hollow.rims.push_back(upright_rim(side, at, across, dormer.height));
+  if (!has_wall) element.rims.push_back(upright_rim(side, at, across, dormer.height));
 }
 
-Hollow describe(const Dormer& dormer) {
+Element describe(const Dormer& dormer) {
   const Plane& host = *dormer.host->plane;
   const auto& [low, high] = dormer.width;
-  Hollow hollow{.kind = Hollow::Kind::kDormer, .planes = {}};
+  Element element{.kind = ElementKind::kDormer, .planes = {}};
   for (const auto* parts : {&dormer.roofs, &dormer.walls})
-    for (const Panel* p : *parts) hollow.planes.push_back(p->id);
-  for (const Panel* p : dormer.roofs) hollow.solid.push_back({p->plane->normal, p->plane->offset});
-  hollow.solid.push_back({-host.normal, -host.offset});
-  hollow.solid.push_back({dormer.across, high});
-  hollow.solid.push_back({-dormer.across, -low});
-  hollow.solid.push_back({-Vec3::UnitZ(), -dormer.height.low});
-  hollow.solid.push_back({dormer.out, dormer.depth.high + 0.02});
-  hollow.is_whole = host.normal.z() > kSteep;
-  if (hollow.is_whole) return hollow;
+    for (const Panel* p : *parts) element.planes.push_back(p->id);
+  for (const Panel* p : dormer.roofs) element.solid.push_back({p->plane->normal, p->plane->offset});
+  element.solid.push_back({-host.normal, -host.offset});
+  element.solid.push_back({dormer.across, high});
+  element.solid.push_back({-dormer.across, -low});
+  element.solid.push_back({-Vec3::UnitZ(), -dormer.height.low});
+  element.solid.push_back({dormer.out, dormer.depth.high + 0.02});
+  element.is_whole = host.normal.z() > kSteep;
+  if (element.is_whole) return element;
   for (const auto& [side, at] : {std::pair{dormer.across, high}, {Vec3(-dormer.across), -low}}) {
     const bool is_along = beside(side).dot(dormer.out) > 0;
     describe_side(dormer, side, at,
-                  is_along ? dormer.depth : Range{-dormer.depth.high, -dormer.depth.low}, hollow);
+                  is_along ? dormer.depth : Range{-dormer.depth.high, -dormer.depth.low}, element);
   }
-  describe_side(dormer, dormer.out, dormer.depth.high, dormer.width, hollow);
-  return hollow;
+  describe_side(dormer, dormer.out, dormer.depth.high, dormer.width, element);
+  return element;
 }
 
 }  // namespace
 
-std::vector<Hollow> dormers_on(const std::vector<Panel>& panels) {
+std::vector<Element> find_dormers(const std::vector<Panel>& panels) {
   const std::vector<Ledge> ledges = find_ledges(panels);
-  std::vector<Hollow> dormers;
+  std::vector<Element> dormers;
   for (const Ledge& l : ledges) {
-    const bool is_known = std::any_of(dormers.begin(), dormers.end(), [&](const Hollow& h) {
+    const bool is_known = std::any_of(dormers.begin(), dormers.end(), [&](const Element& h) {
       return std::find(h.planes.begin(), h.planes.end(), l.roof->id) != h.planes.end();
     });
     if (!is_known) dormers.push_back(describe(dormer_at(panels, ledges, l)));
@@ -148,4 +145,4 @@ std::vector<Hollow> dormers_on(const std::vector<Panel>& panels) {
   return dormers;
 }
 
-}  // namespace colod::hollows
+}  // namespace colod::elements

@@ -1,10 +1,12 @@
-// Shared by `segments` and `extraction`: what planes enclose only in part: trays (balconies),
-// niches (loggias, shop fronts) and shafts (chimneys whose top no scan shows); and bays, dormers
-// and the recesses of windows and doors, which rays do not always part from what is behind them.
+// Shared by `segments` and `extraction`: what planes enclose only in part: balconies, loggias and
+// shop fronts, chimneys whose top no scan shows; and bays, dormers and the recesses of windows and
+// doors, which rays do not always part from what is behind them.
 #pragma once
 
 #include <vector>
 
+#include "core/element_kind.h"
+#include "core/rules.h"
 #include "planes/planes.h"
 
 namespace colod {
@@ -18,20 +20,12 @@ using Region = std::vector<HalfSpace>;  ///< convex: what lies in all of them
 
 bool contains(const Region& region, const Vec3& x);
 
-struct Hollow {
-  enum class Kind {
-    kTray,    ///< a floor with thin walls around it and nothing above
-    kNiche,   ///< between two walls that face each other, behind the facade
-    kShaft,   ///< between two walls that look away from each other; solid
-    kBay,     ///< before a facade; closed, with nothing missing
-    kDormer,  ///< on a roof that it stands out of
-    kRecess   ///< a window's or a door's: a pane behind the facade, and its reveals
-  };
-  Kind kind;
+struct Element {
+  ElementKind kind;
   std::vector<int> planes = {};  ///< rising
   std::vector<int> bounds = {};  ///< those of them that end it, rising: the mesh cannot do without
-  Region air = {};               ///< outside the building, whatever rays see; a shaft has none
-  Region solid = {};             ///< inside it: a tray's floor, a shaft; a niche has none
+  Region air = {};               ///< outside the building, whatever rays see; a chimney has none
+  Region solid = {};             ///< inside it: a balcony's floor, a chimney; a loggia has none
   std::vector<Region> sheets = {};  ///< thin walls: rays say nothing of them
 
   /// Nothing of it is missing that rays would need: bays, recesses, dormers on roofs that are not
@@ -48,9 +42,10 @@ struct Hollow {
   std::vector<Rim> rims = {};
 };
 
-/// Those that the planes `among` (indices, rising) form; a plane may be part of several. Trays
-/// first, then niches, shafts, bays, dormers and recesses, by lowest planes. Cheap: pairs of small
-/// planes that are near.
-std::vector<Hollow> find_hollows(const Planes& planes, const std::vector<int>& among);
+/// Those that the planes `among` (indices, rising) form; a plane may be part of several. Balconies
+/// first, then loggias, chimneys, bays, dormers and recesses, by lowest planes. Cheap: pairs of
+/// small planes that are near. Of the rules each kind's own is asked.
+std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among,
+                                   const RuleSet& rules = RuleSet::all());
 
 }  // namespace colod

@@ -5,13 +5,14 @@
 // predicates, so that no T-junction is left and no coordinate is ever compared.
 // Notation: a corner is one position of one polygon's loop; the half-edge of a corner runs from it
 // to the next corner of the loop.
+#include "boundary.h"
+
 #include <algorithm>
 #include <cassert>
 #include <numeric>
 #include <tuple>
 
 #include "core/union_find.h"
-#include "surface.h"
 
 namespace colod {
 namespace {

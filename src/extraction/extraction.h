@@ -1,21 +1,24 @@
-// Cells → interior and exterior → one watertight polygonal mesh a layer (paper section 3.3,
-// eq. 11).
+// A layer's planes → one watertight polygonal mesh (paper section 3.3, eq. 11): plan → cut → label
+// → prune → simplify → thicken → surface, each verb a file with its own header, values in and out.
+//
+// Space is cut at most three times (the plan, and twice without planes that the surface does not
+// need), once more for sheets on the finest layer; with spares all of that at most five times.
 #pragma once
 
 #include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
-#include "core/rays.h"
-#include "partition/partition.h"
+#include "core/geometry.h"
+#include "core/rules.h"
 #include "planes/planes.h"
+#include "sight.h"
 
 namespace colod {
 
 struct ExtractionOptions {
-  bool is_paper =
-      false;  ///< rays over the sphere, more than half of n_r, no min-cut, no base and no rectangle
+  RuleSet rules = RuleSet::all();  ///< none: rays over the sphere, more than half of n_r, no
+                                   ///< min-cut, no base and no rectangle
   int nr = 100;
   double growth = 0.1;      ///< metres an outline's hull reaches beyond the outline
   double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut
@@ -27,33 +30,11 @@ struct ExtractionOptions {
                             ///< (November 2026: six sets, airborne, photogrammetric, modelled)
 };
 
-/// Shares of the rays of a point or a cell.
-struct Vote {
-  double seen = 0;  ///< valid hits minus others, −1..1; paper: 2 × share of valid hits − 1
-  double sheltered = 0;  ///< that meet nothing although a roof stands above, 0..1
-  double exposed = 0;    ///< that meet nothing, with nothing above, 0..1
-};
-
-/// What a building's outlines look like from within: the scene of all of them, and what was seen
-/// from points so far. The layers of a building and the trials of a layer have most cells in
-/// common: 60 to 75 % of the points are asked again (measured in November 2026 on photogrammetry
-/// meshes and airborne clouds). One for each building and set of options.
-struct Sight {
-  explicit Sight(const Planes& planes);
-
-  struct Hash {
-    std::size_t operator()(const Vec3& p) const;
-  };
-  RayScene rays;
-  std::unordered_map<Vec3, Vote, Hash> votes;
-  std::int64_t cells = 0, most_cells = 0;  ///< of all partitions so far, and of the largest one:
-                                           ///< what work the building makes
-};
-
 struct Extraction {
   PolygonMesh mesh;  ///< closed, 2-manifold where `is_manifold`; local frame; never empty
   std::int64_t cells = 0;
   bool is_manifold = true;
+  std::vector<int> joined;  ///< planes of the spares that joined the layer's, in that order
   std::vector<std::string> warnings;
 };
 
@@ -70,13 +51,9 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
                          const ExtractionOptions& options = {});
 
 /// Likewise; where it brings the surface much nearer to all outlines for few facets, sets of
-/// `spares` (rising plane indices, planes of finer layers) join the layer's planes; `joined` says
-/// which planes did.
+/// `spares` (rising plane indices, planes of finer layers) join the layer's planes: `joined`.
 Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_planes,
                          const std::vector<std::vector<int>>& spares, Sight& sight,
-                         const ExtractionOptions& options, std::vector<int>& joined);
-
-/// The building has made so much work that no further attempt on a layer is due.
-bool is_spent(const Sight& sight);
+                         const ExtractionOptions& options);
 
 }  // namespace colod

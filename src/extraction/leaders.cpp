@@ -5,16 +5,18 @@
 // on a coarse layer a shallow recess is no detail. No plane is moved, so that the planes of coarser
 // layers stay planes of the finer ones.
 // Notation: p leader, q the plane that takes its place.
+#include "leaders.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "candidates.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kAlike_deg = 25;  // between the normals of a plane and its leader
+using namespace parameters::extraction::leaders;
 
 /// The largest distance of the outline from the plane, or `enough` where that is exceeded.
 double reach_of(const Outline& outline, const Plane& plane, double enough) {

@@ -15,26 +15,14 @@
 #include "core/flat.h"
 #include "core/parallel.h"
 #include "core/spread.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kThickness = 0.08;   // metres of a slab
-constexpr double kLeastFar = 0.05;    // metres from the surface: nearer is no sheet …
-constexpr double kFar = 2;            // … nor nearer than that times the layer's tolerance
-constexpr double kJoined = 0.1;       // metres, at least: a border nearer to something ends there
-constexpr double kLeastAcross = 0.5;  // cosine to a border's normal of that of a sheet that ends it
-constexpr double kLevel = 0.9;        // |z| of a normal: a step's …
-constexpr double kStep = 0.6;         // … metres above the foot: it stands on the ground
-constexpr double kLift = 0.02;        // metres off a sheet
-constexpr double kLeastArea = 0.5;    // m² of a sheet …
-constexpr double kLeastShare = 1e-3;  // … and of all planes' area
-constexpr double kLeastSeen = 0.3;    // of a sheet: on both sides
-constexpr double kSpacing = 0.12;     // metres between places that are looked at
+using namespace parameters::extraction::sheets;
+
 constexpr double kMostPlaces = 20000;  // on a plane
-constexpr double kBend = 0.06;         // metres that a border may leave its outline
-constexpr double kInset = 0.06;        // metres from a border: where it is looked at
-constexpr double kShortest = 0.15;     // metres of a border's part that is cut
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
@@ -112,35 +100,22 @@ Sheet find_sheet(const Plane& plane, int id, const Looker& looker) {
   return sheet;
 }
 
-/// The corners of a ring that are farther than `bend` from the lines between those kept.
-void keep_corners(const std::vector<Vec3>& ring, std::size_t from, std::size_t to,
-                  std::vector<std::size_t>& kept) {
-  const Vec3 &a = ring[from], &b = ring[to % ring.size()];
-  const double length = (b - a).norm();
-  double most = kBend;
-  std::size_t farthest = from;
-  for (std::size_t i = from + 1; i < to; ++i) {
+std::vector<Vec3> simplified(const std::vector<Vec3>& ring) {
+  const int n = static_cast<int>(ring.size());
+  int opposite = 0;
+  for (int i = 1; i < n; ++i)
+    if ((ring[i] - ring[0]).squaredNorm() > (ring[opposite] - ring[0]).squaredNorm()) opposite = i;
+  const auto distance = [&](int i, int from, int to) {
+    const Vec3 &a = ring[from], &b = ring[to % n];
+    const double length = (b - a).norm();
     const double t =
         length > 0 ? std::clamp((ring[i] - a).dot(b - a) / (length * length), 0.0, 1.0) : 0.0;
-    const double d = (ring[i] - a - t * (b - a)).norm();
-    if (d > most) most = d, farthest = i;
-  }
-  if (farthest == from) return;
-  keep_corners(ring, from, farthest, kept);
-  kept.push_back(farthest);
-  keep_corners(ring, farthest, to, kept);
-}
-
-std::vector<Vec3> simplified(const std::vector<Vec3>& ring) {
-  std::size_t opposite = 0;
-  for (std::size_t i = 1; i < ring.size(); ++i)
-    if ((ring[i] - ring[0]).squaredNorm() > (ring[opposite] - ring[0]).squaredNorm()) opposite = i;
-  std::vector<std::size_t> kept = {0};
-  keep_corners(ring, 0, opposite, kept);
-  kept.push_back(opposite);
-  keep_corners(ring, opposite, ring.size(), kept);
-  std::vector<Vec3> corners;
-  for (const std::size_t i : kept) corners.push_back(ring[i]);
+    return (ring[i] - a - t * (b - a)).norm();
+  };
+  std::vector<Vec3> corners = {ring[0]};
+  for (const int i : corners_between(0, opposite, kBend, distance)) corners.push_back(ring[i]);
+  corners.push_back(ring[opposite]);
+  for (const int i : corners_between(opposite, n, kBend, distance)) corners.push_back(ring[i]);
   return corners;
 }
 

@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "candidates.h"
-#include "extraction.h"
+#include "core/rays.h"
+#include "plan.h"
+#include "planes/planes.h"
 
 namespace colod {
 

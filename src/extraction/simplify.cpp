@@ -6,17 +6,21 @@
 // surface far nor gives away much volume that the rays are sure of.
 // Notation: a facet is a set of connected pieces of one plane with the inside on one side; the
 // stamp tells the pieces that one search has seen.
+#include "simplify.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "labels.h"
-#include "surface.h"
+#include "boundary.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kLeastVote = 0.25;  // what a cell counts at least, however unsure its side is
+using namespace parameters::extraction::simplify;
+
 constexpr int kRounds = 4;
 
 void sort_unique(std::vector<int>& ids) {
@@ -220,12 +224,38 @@ class Simplifier {
   int stamp_ = 0;
 };
 
+/// Per plane of the partition whether it is a side of a round shape.
+std::vector<char> sides_of(const Partition& partition, const Planes& planes) {
+  std::vector<char> is_side;
+  for (const Partition::IntPlane& p : partition.planes)
+    is_side.push_back(p.source_plane >= 0 && planes.has_side(p.source_plane));
+  return is_side;
+}
+
 }  // namespace
 
 int simplify_cells(const Partition& partition, const Evidence& evidence,
                    const std::vector<char>& is_forced_out, const SimplifyOptions& options,
                    std::vector<char>& is_inside) {
   return Simplifier(partition, evidence, is_forced_out, options, is_inside).run();
+}
+
+Draft simplify(Draft draft, const Planes& planes, const ExtractionOptions& options) {
+  const double price = kFacetPrice * options.tolerance * surface_area(draft.shell.mesh.mesh());
+  const bool is_capped =
+      options.is_finest && options.rules.has(Rule::kPriceCap) && planes.is_clean();
+  std::vector<char> is_inside = draft.labels.is_inside;
+  simplify_cells(draft.partition, draft.labels.evidence, draft.labels.is_forced_out,
+                 {.facet_volume = is_capped ? std::min(price, kMostPrice) : price,
+                  .depth = kMostMoved * options.tolerance,
+                  .is_fixed = sides_of(draft.partition, planes)},
+                 is_inside);
+  Shell shell = make_surface(draft.partition, is_inside, options.rules);
+  const bool is_leaner = !shell.mesh.facets.empty() &&
+                         shell.mesh.facets.size() < draft.shell.mesh.facets.size() &&
+                         keeps_volume(draft.shell.mesh, shell.mesh);
+  if (is_leaner) draft.labels.is_inside = std::move(is_inside), draft.shell = std::move(shell);
+  return draft;
 }
 
 }  // namespace colod

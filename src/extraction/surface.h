@@ -1,91 +1,36 @@
-// Inside room `extraction`: the surface between inside and outside cells, made 2-manifold and
-// written as polygons.
+// Inside room `extraction`, the last verb: cells → one watertight polygonal mesh. Every verb that
+// changes cells ends with it, since facets are what it is judged by.
 #pragma once
 
-#include <functional>
-#include <unordered_map>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "core/geometry.h"
+#include "label.h"
 #include "partition/partition.h"
 
 namespace colod {
 
-/// The pieces between an inside and an outside cell, split at every vertex on their lines, so that
-/// an edge of one is an edge of its neighbours.
-struct Boundary {
-  struct Polygon {
-    int piece;
-    int plane;
-    bool is_reversed;       ///< the outward normal looks against the plane's
-    int inside, outside;    ///< cells; outside −1: beyond the box
-    std::vector<int> loop;  ///< vertex ids, counter-clockwise seen from outside
-  };
-  std::vector<Polygon> polygons;
+struct Shell {
+  PolygonMesh mesh;   ///< closed, outward
+  double mended = 0;  ///< m³ of the cells that were turned round to make it a 2-manifold
 };
-
-/// Finds boundaries of one partition; remembers which pairs of planes meet in the same line.
-class BoundaryFinder {
- public:
-  explicit BoundaryFinder(const Partition& partition) : partition_(partition) {}
-  Boundary find(const std::vector<char>& is_inside);
-  /// Pairs of pieces (a < b, rising) of one plane that have a stretch of an edge in common.
-  std::vector<std::pair<int, int>> find_neighbours();
-
- private:
-  int line_of(int plane_a, int plane_b);
-  /// Orders vertices of the line.
-  std::function<bool(int, int)> less_on(int line) const;
-  /// Per piece the line of each edge; appends the ends to `vertices_of_line`.
-  std::vector<std::vector<int>> lines_of(const std::vector<int>& pieces,
-                                         std::vector<std::pair<int, int>>& vertices_of_line);
-  /// Per line its vertices in order.
-  std::vector<std::vector<int>> sort_lines(std::vector<std::pair<int, int>> vertices_of_line) const;
-  /// The vertices from a to b, without b, of a line's.
-  std::vector<int> split_edge(int a, int b, int line, const std::vector<int>& order) const;
-  /// Vertices of the boundary that only touch a line of it, as corners of pieces between equal
-  /// cells.
-  void add_touching(const Boundary& boundary, std::vector<std::pair<int, int>>& vertices_of_line);
-
-  const Partition& partition_;
-  std::unordered_map<std::uint64_t, int> line_of_pair_;
-  std::unordered_map<LineId, int, LineIdHash> line_of_id_;
-  std::vector<std::array<int, 2>> planes_of_line_;
-};
-
-/// The cells around each edge with more than two faces and each vertex with more than one fan of
-/// faces; −1 stands for the space beyond the box. Empty: the boundary is a closed 2-manifold.
-std::vector<std::vector<int>> find_pinches(const Boundary& boundary);
-
-/// The same for triangles: every edge once in each direction, every vertex one fan.
-bool is_closed_manifold(const std::vector<Face>& triangles);
-
-/// Facets merged by plane and side, vertices only where three facets meet, exact constrained
-/// Delaunay triangles, doubles at the very end. \pre find_pinches(boundary) is empty. Facets are
-/// sorted by plane id; `plane` is the source plane of the partition's.
-PolygonMesh build_surface(const Partition& partition, const Boundary& boundary);
-
-/// Contracts edges shorter than `length` where the surface stays closed and 2-manifold, no triangle
-/// turns over and none comes to cut another; returns how many.
-int contract_short_edges(PolygonMesh& mesh, double length);
-
-struct FacetSize {
-  double area = 0;       ///< m²
-  double perimeter = 0;  ///< metres, holes included
-  double width() const { return perimeter > 0 ? 2 * area / perimeter : 0; }
-};
-FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet);
-
-/// The same for edges of facets narrower than `width` metres, and of triangles that contracting has
-/// bent away from theirs, up to 16 times as long: shorter ones first, and only while that is so. In
-/// the end longer ones, where no triangle's plane moves by more than `width`.
-int contract_narrow_facets(PolygonMesh& mesh, double width);
 
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest
-/// component, and unless to the letter substantial others, with cavities filled. Empty when no cell
-/// is inside. `mended_volume`, when asked for: m³ of the cells that were turned round.
-PolygonMesh extract_surface(const Partition& partition, std::vector<char> is_inside,
-                            bool is_paper = false, double* mended_volume = nullptr);
+/// component, and by rules substantial others, with cavities filled. Empty when no cell
+/// is inside.
+Shell make_surface(const Partition& partition, std::vector<char> is_inside,
+                   const RuleSet& rules = RuleSet::all());
+
+/// A verb may cost the body no more than 3 % of its volume.
+bool keeps_volume(const PolygonMesh& before, const PolygonMesh& after);
+
+/// A layer between two verbs: the space as it was cut, what of it is inside, the surface around it.
+struct Draft {
+  Partition partition;
+  Labels labels;
+  Shell shell;
+  std::vector<std::string> warnings;  ///< of the first partition and of labelling
+};
 
 }  // namespace colod

@@ -4,21 +4,19 @@
 // with no roof beyond it and no wall of the layer under it becomes a vertical candidate plane,
 // which the min-cut may use or leave.
 // Notation: the outer side of a border is the side away from its roof.
+#include "walls.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "candidates.h"
+#include "core/flat.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSimplify = 0.4;    // metres: how far a border may leave its line
-constexpr double kShortest = 1.5;    // metres of border that ask for a wall
-constexpr double kBeside = 0.5;      // metres beyond the border, where a roof would go on
-constexpr double kStep = 0.7;        // metres of height that still count as the same roof
-constexpr double kSupport = 0.8;     // metres between a border and the wall that carries it
-constexpr double kTogether = 0.35;   // metres between borders that share a wall
-constexpr double kParallel = 0.985;  // cosine of 10 degrees
+using namespace parameters::extraction::walls;
+
 constexpr std::size_t kMost = 60;
 
 struct Border {
@@ -28,26 +26,6 @@ struct Border {
   Vec2 outward() const { return Vec2(b.y() - a.y(), a.x() - b.x()) / length; }
   Vec2 middle() const { return 0.5 * (a + b); }
 };
-
-/// Positions of the ring that stay when nothing may move by more than kSimplify.
-void simplify(const std::vector<Vec3>& points, std::size_t first, std::size_t last,
-              std::vector<std::size_t>& kept) {
-  const Vec2 a = points[first].head<2>(), d = points[last].head<2>() - a;
-  const double length = d.norm();
-  double worst = kSimplify;
-  std::size_t split = first;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const Vec2 e = points[i].head<2>() - a;
-    const double away = length > 0 ? std::abs(d.x() * e.y() - d.y() * e.x()) / length : e.norm();
-    if (away > worst) worst = away, split = i;
-  }
-  if (split != first) {
-    simplify(points, first, split, kept);
-    simplify(points, split, last, kept);
-  } else {
-    kept.push_back(last);
-  }
-}
 
 void add_borders(const Plane& roof, std::vector<Border>& borders) {
   for (const std::vector<int>& ring : roof.outline.rings) {
@@ -60,8 +38,15 @@ void add_borders(const Plane& roof, std::vector<Border>& borders) {
     });
     std::rotate(points.begin(), far, points.end());
     points.push_back(points[0]);
-    std::vector<std::size_t> kept = {0};
-    simplify(points, 0, points.size() - 1, kept);
+    const auto distance = [&](int i, int from, int to) {
+      const Vec2 d = (points[to] - points[from]).head<2>(),
+                 e = (points[i] - points[from]).head<2>();
+      const double length = d.norm();
+      return length > 0 ? std::abs(cross(d, e)) / length : e.norm();
+    };
+    const int last = static_cast<int>(points.size()) - 1;
+    std::vector<int> kept = corners_between(0, last, kSimplify, distance);
+    kept.insert(kept.begin(), 0), kept.push_back(last);
     for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
       const Vec3 &p = points[kept[i]], &q = points[kept[i + 1]];
       const double length = (q - p).head<2>().norm();
@@ -158,10 +143,13 @@ CutPlane cut_under(const Border& border, const Wall& wall, const Box& box) {
 
 }  // namespace
 
-void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const RayScene& rays,
-               CuttingPlan& plan) {
+std::vector<CutPlane> walls_under_borders(const Planes& planes,
+                                          const std::vector<int>& layer_planes,
+                                          const RayScene& rays, const Box& box,
+                                          const std::vector<CuttingPlan::Limit>& limits) {
+  std::vector<CutPlane> cuts;
   std::vector<Wall> walls;
-  for (const CuttingPlan::Limit& side : plan.limits)
+  for (const CuttingPlan::Limit& side : limits)
     if (side.normal.head<2>().norm() > 0.99)
       walls.push_back({side.normal.head<2>().normalized(), side.offset});
   const std::size_t most = walls.size() + kMost;
@@ -174,9 +162,9 @@ void add_walls(const Planes& planes, const std::vector<int>& layer_planes, const
     if (is_known) continue;
     const Vec2 normal = aligned_normal(walls, b);
     walls.push_back({normal, normal.dot(b.middle())});
-    plan.planes.push_back(cut_under(b, walls.back(), plan.box));
-    plan.input.push_back(-1);
+    cuts.push_back(cut_under(b, walls.back(), box));
   }
+  return cuts;
 }
 
 }  // namespace colod

@@ -104,37 +104,40 @@ TruthBuilding read_synth_building(const nlohmann::json& b) {
     if (p.at("level") == 0)
       building.main_building.push_back(p.at("instance"));
     else
-      building.parts.push_back({p.at("type"), p.at("instance"), p.at("level"), p.at("depth")});
+      building.parts.push_back({kind_named(p.at("type").get<std::string>()), p.at("instance"),
+                                p.at("level"), p.at("depth")});
   return building;
 }
 
-// Empty for what is not judged: walls, roofs and what no rule names.
-std::string kind_of(const nlohmann::json& object) {
+// kPlain for what is not judged: walls, roofs and what no rule names.
+ElementKind kind_of(const nlohmann::json& object) {
   const std::string type = object.value("type", "");
-  if (type == "Window" || type == "Door") return type == "Window" ? "window" : "door";
-  if (type != "BuildingInstallation") return "";
+  if (type == "Window") return ElementKind::kWindow;
+  if (type == "Door") return ElementKind::kDoor;
+  if (type != "BuildingInstallation") return ElementKind::kPlain;
   const auto guess = object.find("function_guess_from_geometry");
   const std::string text =
       guess != object.end() && guess->is_string() ? guess->get<std::string>() : "";
-  for (const char* kind : {"chimney", "dormer", "balcony", "steps", "thin"})
-    if (text.starts_with(kind)) return kind;
-  return "other";
+  for (const ElementKind kind : {ElementKind::kChimney, ElementKind::kDormer, ElementKind::kBalcony,
+                                 ElementKind::kSteps, ElementKind::kThin})
+    if (text.starts_with(name_of(kind))) return kind;
+  return ElementKind::kOther;
 }
 
 TruthBuilding read_labelled_building(const std::string& name, const nlohmann::json& b) {
   TruthBuilding building{name, {}, {}};
   for (const auto& object : b.at("objects"))
-    if (const std::string kind = kind_of(object); kind.empty())
+    if (const ElementKind kind = kind_of(object); kind == ElementKind::kPlain)
       building.main_building.push_back(object.at("index"));
     else
       building.parts.push_back({kind, object.at("index"), -1, -1});
   return building;
 }
 
-TypeConsistency tally_type(const std::string& type, const std::vector<const PlacedPart*>& parts,
+TypeConsistency tally_kind(ElementKind kind, const std::vector<const PlacedPart*>& parts,
                            int layers) {
   TypeConsistency t;
-  t.type = type;
+  t.kind = kind;
   t.first.assign(layers, 0), t.present.assign(layers, 0);
   std::vector<double> depths;
   for (const PlacedPart* p : parts) {
@@ -200,7 +203,7 @@ std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& t
   std::vector<PlacedPart> placed;
   for (const SampledPart& part : sample_parts(source, truth)) {
     PlacedPart p{.building = truth.name,
-                 .type = part.truth.type,
+                 .kind = part.truth.kind,
                  .instance = part.truth.instance,
                  .level = part.truth.level,
                  .depth = part.truth.depth,
@@ -221,29 +224,31 @@ std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& t
 }
 
 std::vector<TypeConsistency> tally_parts(const std::vector<PlacedPart>& parts, int layers) {
-  std::map<std::string, std::vector<const PlacedPart*>> by_type;
-  for (const PlacedPart& p : parts) by_type[p.type].push_back(&p);
+  std::map<std::string, std::vector<const PlacedPart*>> by_name;
+  for (const PlacedPart& p : parts) by_name[name_of(p.kind)].push_back(&p);
   std::vector<TypeConsistency> types;
-  for (const auto& [type, members] : by_type) types.push_back(tally_type(type, members, layers));
+  for (const auto& [name, members] : by_name)
+    types.push_back(tally_kind(members.front()->kind, members, layers));
   return types;
 }
 
 std::string consistency_json(const std::vector<TypeConsistency>& types) {
   Json json = Json::object();
   for (const TypeConsistency& t : types)
-    json[t.type] = {{"seen", t.seen},
-                    {"unseen", t.unseen},
-                    {"never", t.never},
-                    {"first", t.first},
-                    {"present", t.present},
-                    {"depth", t.depth},
-                    {"majority_layer", t.majority_layer},
-                    {"on_majority_layer", t.on_majority_layer},
-                    {"of_appearing", t.of_appearing},
-                    {"on_expected_layer",
-                     t.seen > t.never ? static_cast<double>(t.expected) / (t.seen - t.never) : 0},
-                    {"buildings", t.buildings},
-                    {"buildings_agreeing", t.buildings_agreeing}};
+    json[name_of(t.kind)] = {
+        {"seen", t.seen},
+        {"unseen", t.unseen},
+        {"never", t.never},
+        {"first", t.first},
+        {"present", t.present},
+        {"depth", t.depth},
+        {"majority_layer", t.majority_layer},
+        {"on_majority_layer", t.on_majority_layer},
+        {"of_appearing", t.of_appearing},
+        {"on_expected_layer",
+         t.seen > t.never ? static_cast<double>(t.expected) / (t.seen - t.never) : 0},
+        {"buildings", t.buildings},
+        {"buildings_agreeing", t.buildings_agreeing}};
   return json.dump();
 }
 

@@ -10,12 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "core/element_kind.h"
 #include "core/geometry.h"
 
 namespace colod {
 
 struct TruthPart {
-  std::string type;   ///< "dormer", "chimney", …
+  ElementKind kind;
   int instance = 0;   ///< its number in Source::face_object
   int level = -1;     ///< the layer it is expected on; −1: not said
   double depth = -1;  ///< metres of relief; negative: not said, taken from the mesh
@@ -31,12 +32,13 @@ using Truth = std::vector<TruthBuilding>;
 
 /// Reads what `colod synth` writes as truth.json, or labels: a JSON object with, per building,
 /// `objects` of `index`, `type` and `function_guess_from_geometry` (kinds are then guesses by size
-/// and place). Throws Error{kInput}.
+/// and place). Words that name no kind are kOther. Throws Error{kInput}.
 Truth read_truth(const std::string& path);
 
 /// One part in one building.
 struct PlacedPart {
-  std::string building, type;
+  std::string building;
+  ElementKind kind = ElementKind::kOther;
   int instance = 0, level = -1;
   double depth = 0;           ///< metres; measured where the truth does not say
   bool is_seen = false;       ///< the source shows enough of it
@@ -50,9 +52,9 @@ struct PlacedPart {
 std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& truth,
                                     const std::vector<Mesh>& layers);
 
-/// All parts of one type.
+/// All parts of one kind.
 struct TypeConsistency {
-  std::string type;
+  ElementKind kind = ElementKind::kOther;
   int seen = 0, unseen = 0;         ///< instances; the latter count nowhere below
   int never = 0;                    ///< seen, on no layer
   int expected = 0;                 ///< on the layer that the truth expects
@@ -61,14 +63,14 @@ struct TypeConsistency {
   int majority_layer = -1;          ///< on which most appear, the coarsest of equals; −1: none
   double on_majority_layer = 0;     ///< share of those seen; never counts against it
   double of_appearing = 0;          ///< the same, of those that appear on any layer
-  int buildings = 0;                ///< that show the type
+  int buildings = 0;                ///< that show the kind
   double buildings_agreeing = 0;    ///< share of those with all of its parts on that layer
 };
 
-/// Sorted by type.
+/// Sorted by the kinds' names.
 std::vector<TypeConsistency> tally_parts(const std::vector<PlacedPart>& parts, int layers);
 
-/// For report.json and `colod eval --truth`: a JSON object by type.
+/// For report.json and `colod eval --truth`: a JSON object by the kinds' names.
 std::string consistency_json(const std::vector<TypeConsistency>& types);
 
 }  // namespace colod

@@ -62,7 +62,7 @@ void add_layer_planes(const Building& b, int k, const Options& o, std::vector<in
 /// Metres: what is no detail on layer k. An exact model of few planes has none to give away.
 double tolerance(const Building& b, int k, const Options& o) {
   if (!o.rules.has(Rule::kTolerance)) return 0;
-  const bool is_plain = b.planes.distance <= kLeastDistance && b.planes.planes.size() <= kFewPlanes;
+  const bool is_plain = b.planes.is_clean() && b.planes.planes.size() <= kFewPlanes;
   const double least = kLeastTolerance * b.planes.box.diagonal();
   if (is_plain) return std::min(least, b.planes.distance);
   const double share = k + 1 < o.layers ? kTolerance / std::pow(2, k) : 0;
@@ -72,20 +72,20 @@ double tolerance(const Building& b, int k, const Options& o) {
 /// The layer of these planes; where round shapes have fewer sides, with planes of its own.
 Extraction extract_planes(const Building& b, int k, const std::vector<RoundShape>& shapes,
                           const std::vector<int>& planes, std::vector<std::vector<int>> spares,
-                          Sight& sight, const Options& o, std::vector<int>& joined) {
-  const ExtractionOptions options{.is_paper = o.rules.is_none(),
+                          Sight& sight, const Options& o) {
+  const ExtractionOptions options{.rules = o.rules,
                                   .nr = o.nr,
                                   .tolerance = tolerance(b, k, o),
                                   .is_finest = k + 1 == o.layers};
   if (shapes.empty() || options.is_finest || !o.rules.has(Rule::kRoundLayers))
-    return extract_layer(b.planes, planes, spares, sight, options, joined);
+    return extract_layer(b.planes, planes, spares, sight, options);
   const ReducedLayer reduced =
       reduce_layer(b.planes, planes, shapes, 2 * M_PI / (kSides * std::pow(2, k)));
   for (std::vector<int>& set : spares)
     std::erase_if(set, [&](int p) { return b.planes.has_side(p); });
   std::erase_if(spares, [](const std::vector<int>& set) { return set.empty(); });
   Sight seen(reduced.planes);  // a chord of the real surface would be taken for an inside
-  Extraction result = extract_layer(reduced.planes, reduced.which, spares, seen, options, joined);
+  Extraction result = extract_layer(reduced.planes, reduced.which, spares, seen, options);
   for (PolygonMesh::Facet& f : result.mesh.facets)
     if (f.plane >= 0) f.plane = reduced.real[f.plane];
   return result;
@@ -99,10 +99,8 @@ void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
     std::vector<std::vector<int>> spares;
     if (o.rules.has(Rule::kMissingPlanes) && layer.layer == 0 && o.layers > 1)
       spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
-    std::vector<int> joined;
-    Extraction result =
-        extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o, joined);
-    planes.insert(planes.end(), joined.begin(), joined.end());
+    Extraction result = extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o);
+    planes.insert(planes.end(), result.joined.begin(), result.joined.end());
     layer.mesh = std::move(result.mesh);
     if (layer.mesh.triangles.empty()) layer.failure = kEmptyLayer;
     for (const std::string& w : result.warnings)

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "parameters.h"
+#include "rounds/reduce.h"
 
 namespace colod {
 namespace {

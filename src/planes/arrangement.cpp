@@ -15,6 +15,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/flat.h"
+
 namespace colod::regions {
 namespace {
 
@@ -220,31 +222,17 @@ std::vector<Vec2> simplify_ring(const std::vector<Vec2>& ring, double tolerance)
   int far = begin;
   for (int i = 0; i < n; ++i)
     if ((ring[i] - ring[begin]).norm() > (ring[far] - ring[begin]).norm()) far = i;
-  std::vector<char> stays(n, 0);
-  stays[begin] = stays[far] = 1;
-  const auto gap = [n](int from, int to) { return (to - from + n) % n; };
-  std::vector<std::pair<int, int>> stack{{begin, far}, {far, begin}};
-  while (!stack.empty()) {
-    const auto [a, b] = stack.back();
-    stack.pop_back();
-    const Vec2 along = ring[b] - ring[a];
-    const double length2 = std::max(along.squaredNorm(), 1e-300);
-    double most = tolerance;
-    int worst = -1;
-    for (int k = 1; k < gap(a, b); ++k) {
-      const Vec2 to = ring[(a + k) % n] - ring[a];
-      const double t = std::clamp(to.dot(along) / length2, 0.0, 1.0);
-      const double d = (to - t * along).norm();
-      if (d > most) most = d, worst = (a + k) % n;
-    }
-    if (worst < 0) continue;
-    stays[worst] = 1;
-    stack.push_back({a, worst});
-    stack.push_back({worst, b});
-  }
-  std::vector<Vec2> left;
-  for (int k = 0; k < n; ++k)
-    if (stays[(begin + k) % n]) left.push_back(ring[(begin + k) % n]);
+  const int opposite = (far - begin + n) % n;
+  const auto at = [&](int k) -> const Vec2& { return ring[(begin + k) % n]; };
+  const auto distance = [&](int i, int from, int to) {
+    const Vec2 along = at(to) - at(from), off = at(i) - at(from);
+    const double t = std::clamp(off.dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
+    return (off - t * along).norm();
+  };
+  std::vector<Vec2> left = {at(0)};
+  for (const int k : corners_between(0, opposite, tolerance, distance)) left.push_back(at(k));
+  if (opposite > 0) left.push_back(at(opposite));
+  for (const int k : corners_between(opposite, n, tolerance, distance)) left.push_back(at(k));
   return left.size() < 3 ? std::vector<Vec2>{} : left;
 }
 

@@ -3,7 +3,8 @@
 // fitted again when a region has grown by 30 %, and the angle test sees smoothed normals: 0.2–0.8 s
 // where CGAL took 1–11 s on 110–265 thousand faces (measured in November 2026).
 // Notation: n normal, d offset of a region's plane.
-#include <Eigen/Eigenvalues>
+#include "growing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -11,7 +12,6 @@
 #include <tuple>
 
 #include "parameters.h"
-#include "parts.h"
 
 namespace colod::regions {
 namespace {
@@ -86,52 +86,6 @@ void sort_by_area(std::vector<Region>& regions) {
 }
 
 }  // namespace
-
-void Moments::add(const Moments& other) {
-  weight += other.weight;
-  sum += other.sum;
-  squares += other.squares;
-}
-
-void Moments::add_item(const Items& items, int item) {
-  std::array<Vec3, 3> p;
-  const int count = items.corners(item, p);
-  const double w = items.area[item];
-  weight += w;
-  sum += w * items.center[item];
-  if (count == 1) {
-    squares += w * p[0] * p[0].transpose();
-    return;
-  }
-  const Vec3 s = p[0] + p[1] + p[2];
-  squares += w / 12 *
-             (p[0] * p[0].transpose() + p[1] * p[1].transpose() + p[2] * p[2].transpose() +
-              s * s.transpose());
-}
-
-Eigen::Matrix3d Moments::covariance() const {
-  if (weight <= 0) return Eigen::Matrix3d::Zero();
-  const Vec3 c = mean();
-  return squares / weight - c * c.transpose();
-}
-
-Vec3 Moments::fit(const Vec3& like) const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance());
-  // A region that is a line so far has no plane of its own yet.
-  if (solver.info() != Eigen::Success || solver.eigenvalues()[1] < 1e-9) return like;
-  const Vec3 n = solver.eigenvectors().col(0).normalized();
-  return n.dot(like) < 0 ? Vec3(-n) : n;
-}
-
-double Moments::rms(const Vec3& normal, double offset) const {
-  const double shift = normal.dot(mean()) - offset;
-  return std::sqrt(std::max(0.0, normal.dot(covariance() * normal)) + shift * shift);
-}
-
-void Region::refit() {
-  normal = moments.fit(normal);
-  offset = normal.dot(moments.mean());
-}
 
 std::vector<Region> grow_regions(const Items& items, const std::vector<Vec3>& smooth,
                                  const GrowingOptions& options) {

@@ -3,6 +3,8 @@
 // Differs: floaters are dropped under --rules robust only; the paper has
 // no such step.
 // Notation: k nearest neighbours of a point; everything else by name.
+#include "items.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
@@ -13,10 +15,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "parameters.h"
-#include "parts.h"
 
 namespace colod::regions {
 namespace {
@@ -131,12 +133,6 @@ std::vector<std::vector<std::pair<double, int>>> nearest_points(const Items& ite
   return result;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 void add_points(Items& items) {
   const PointCloud& cloud = items.source->cloud;
   const bool has_normals = cloud.normals.size() == cloud.points.size();
@@ -152,8 +148,8 @@ void add_points(Items& items) {
   for (const auto& list : nearest)
     if (!list.empty())
       reach.push_back(list.back().first), spacing.push_back(list[list.size() / 4].first);
-  items.spacing = median(spacing);
-  const double most = 3 * median(reach);
+  items.spacing = upper_median(spacing);
+  const double most = 3 * upper_median(reach);
   std::vector<Link> links;
   items.area.assign(items.size(), 0);
   for (int i = 0; i < items.size(); ++i) {

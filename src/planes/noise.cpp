@@ -1,13 +1,15 @@
 // Based on: region growing at three times the residual of the building's largest planes (measured
 // in November 2026). Differs: --rules robust only; the paper grows at a fixed 0.2 m on raw normals.
 // Notation: none.
+#include "noise.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/parallel.h"
 #include "parameters.h"
-#include "parts.h"
+#include "region.h"
 
 namespace colod::regions {
 namespace {
@@ -55,6 +57,10 @@ double estimate_noise(const Items& items) {
   // The flattest tenth: the others also measure edges and recesses.
   std::sort(residuals.begin(), residuals.end());
   return residuals[residuals.size() / 10];
+}
+
+Planes::Surface judge_surface(double noise, double distance) {
+  return kNoiseFactor * noise <= kPlainDistance ? Planes::Surface::kExact : surface_at(distance);
 }
 
 std::vector<Vec3> smooth_normals(const Items& items, int rounds) {

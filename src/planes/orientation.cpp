@@ -3,6 +3,8 @@
 // Airborne clouds hold next to no walls that could stop rays; there roofs are turned to the sky and
 // walls away from the roof above them.
 // Notation: front = the side the normal points to.
+#include "orientation.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +12,8 @@
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "core/spread.h"
+#include "outline.h"
 #include "parameters.h"
-#include "parts.h"
 
 namespace colod::regions {
 namespace {

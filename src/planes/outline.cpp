@@ -3,13 +3,16 @@
 // Robust besides: holes under 0.25 m² are filled and rings that end within a few growing distances
 // of a neighbouring plane are drawn onto the common line, because horizontal rays leak through
 // gaps. Notation: u, v axes in the plane; L the line where two planes meet.
+#include "outline.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "arrangement.h"
+#include "core/flat.h"
 #include "core/parallel.h"
+#include "growing.h"
 #include "parameters.h"
-#include "parts.h"
 
 namespace colod::regions {
 namespace {
@@ -93,15 +96,13 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (p - a - t * along).norm();
 }
 
-double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// From a point of the sheet's plane to what the sheet covers; 0 on it. Gives up beyond `limit`.
 bool is_near(const Sheet& sheet, const Vec3& point, double limit) {
   const Vec2 p = sheet.chart.flat(point);
   const auto& v = sheet.flat.vertices;
   for (const Face& t : sheet.flat.triangles) {
     const Vec2 &a = v[t[0]], &b = v[t[1]], &c = v[t[2]];
-    if (cross2(b - a, p - a) >= 0 && cross2(c - b, p - b) >= 0 && cross2(a - c, p - c) >= 0)
+    if (cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 && cross(a - c, p - c) >= 0)
       return true;
   }
   for (const auto& ring : sheet.flat.rings)

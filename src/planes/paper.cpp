@@ -3,6 +3,8 @@
 // only. Faces that would make the mesh non-manifold get vertices of their own, since CGAL's mesh
 // cannot hold them.
 // Notation: as CGAL's manual.
+#include "paper.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Point_set_3.h>
 #include <CGAL/Shape_detection/Region_growing/Region_growing.h>
@@ -11,8 +13,6 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
-
-#include "parts.h"
 
 namespace colod::regions {
 namespace {

@@ -29,9 +29,10 @@ constexpr double kAreaOfDistance = 2.5;  // m² a metre of growing distance: the
 constexpr double kLeastArea = 0.05;      // … between these m², whatever its share is
 constexpr double kLeastAreaRough = 0.25;
 constexpr std::size_t kMostPlanes = 4000;
-constexpr double kCleanNoise = 0.005;  // metres: below, normals need no smoothing
-constexpr double kFootBeside = 1;      // metres that a foot's points may be out of the box in plan
-constexpr double kFootHeight = 0.5;    // metres of height that these have together:
+constexpr double kSmoothedNoise =
+    0.005;  // metres: below, normals need no smoothing; kClean ends at 4.3 mm
+constexpr double kFootBeside = 1;    // metres that a foot's points may be out of the box in plan
+constexpr double kFootHeight = 0.5;  // metres of height that these have together:
 constexpr std::size_t kFootPoints = 4;
 constexpr double kRefitGrowth = 1.3;
 constexpr double kMergeAngleCosine = 0.9781;  // 12°

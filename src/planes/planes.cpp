@@ -11,15 +11,21 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "growing.h"
+#include "items.h"
+#include "noise.h"
+#include "orientation.h"
+#include "outline.h"
+#include "paper.h"
 #include "parameters.h"
-#include "parts.h"
+#include "region.h"
+#include "regularize.h"
+#include "round.h"
 
 namespace colod {
 namespace {
 
 using namespace parameters::planes;
-
-using namespace regions;
 
 double used_area(const Items& items) {
   double sum = 0;
@@ -73,22 +79,19 @@ AlignOptions align_options(double noise, double distance, const Box& box, const 
           .is_strip_turned = rules.has(Rule::kNarrowStrips)};
 }
 
-/// Flat to the millimetre, as what people draw.
-bool is_exact(double noise) { return kNoiseFactor * noise <= kPlainDistance; }
-
 /// The regions of an exact model of few planes, grown so tightly that walls which bend by a
 /// centimetre stay two; none: it is not one.
-std::vector<Region> plain_regions(const Items& items, double noise, double angle_deg) {
-  if (!is_exact(noise)) return {};
+std::vector<Region> plain_regions(const Items& items, Planes::Surface surface, double angle_deg) {
+  if (surface != Planes::Surface::kExact) return {};
   std::vector<Region> regions = grow_regions(items, items.normal, {kPlainDistance, angle_deg});
   if (regions.size() > kFewPlanes) regions.clear();
   return regions;
 }
 
 /// m²: regions below are no planes. Rougher surfaces need larger ones.
-double least_area(double noise, double distance, double total) {
+double least_area(Planes::Surface surface, double distance, double total) {
   const double absolute = std::clamp(kAreaOfDistance * distance, kLeastArea, kLeastAreaRough);
-  const double share = is_exact(noise) ? kLeastShareExact : kLeastShare;
+  const double share = surface == Planes::Surface::kExact ? kLeastShareExact : kLeastShare;
   return std::min(std::max(absolute, share * total), kMostShare * total);
 }
 
@@ -119,14 +122,16 @@ void set_used(const std::vector<Region>& regions, bool is_used, Items& items) {
     for (const int i : r.items) items.is_used[i] = is_used;
 }
 
-/// Regions of the items in use, before any is dropped for its size; sets the distance of growing.
+/// Regions of the items in use, before any is dropped for its size; sets the distance of growing
+/// and what the surface is.
 std::vector<Region> grow(const Items& items, const Box& box, double noise,
                          const PlaneOptions& options, Planes& result) {
   const RuleSet& rules = options.rules;
-  result.distance =
-      rules.has(Rule::kNoise) ? growing_distance(noise, box, options) : options.distance;
+  const double found = growing_distance(noise, box, options);
+  result.distance = rules.has(Rule::kNoise) ? found : options.distance;
+  result.surface = rules.is_none() ? surface_at(options.distance) : judge_surface(noise, found);
   if (rules.has(Rule::kFewPlanes))
-    if (std::vector<Region> regions = plain_regions(items, noise, options.angle_deg);
+    if (std::vector<Region> regions = plain_regions(items, result.surface, options.angle_deg);
         !regions.empty()) {
       result.distance = std::min(kPlainDistance, result.distance);
       return regions;
@@ -137,7 +142,7 @@ std::vector<Region> grow(const Items& items, const Box& box, double noise,
     if (rules.has(Rule::kRegionArea)) growing.min_points = items.is_mesh() ? 1 : 3;
     return grow_with_cgal(items, growing);
   }
-  const bool is_smooth = !rules.has(Rule::kSmoothNormals) || noise <= kCleanNoise;
+  const bool is_smooth = !rules.has(Rule::kSmoothNormals) || noise <= kSmoothedNoise;
   return grow_regions(items, smooth_normals(items, is_smooth ? 0 : 2),
                       {result.distance, options.angle_deg});
 }
@@ -149,7 +154,7 @@ std::vector<Region> flat_regions(const Items& items, const Box& box, double tota
   std::vector<Region> regions = grow(items, box, noise, options, result);
   if (options.rules.is_none()) return regions;  // CGAL's are no smaller than it was told
   const bool is_by_area = options.rules.has(Rule::kRegionArea);
-  const double least = least_area(noise, result.distance, total);
+  const double least = least_area(result.surface, result.distance, total);
   drop_small(items, least / 4, options.min_points / 2, is_by_area, regions);
   limit_count(regions, result.warnings);
   regularize(items, result.distance, align_options(noise, result.distance, box, options.rules),
@@ -210,6 +215,10 @@ void sort_planes(std::vector<Plane>& planes) {
 }
 
 }  // namespace
+
+Planes::Surface surface_at(double distance) {
+  return distance <= kLeastDistance ? Planes::Surface::kClean : Planes::Surface::kNoisy;
+}
 
 Planes detect_planes(const Source& source, const PlaneOptions& options) {
   Planes result;

@@ -29,18 +29,30 @@ struct PlaneOptions {
 };
 
 struct Planes {
+  /// How exactly a source knows its surface: decided once, with the planes.
+  enum class Surface {
+    kExact,  ///< flat to the millimetre, as what people draw
+    kClean,  ///< no noise asks planes to grow farther than kLeastDistance
+    kNoisy   ///< photogrammetry, most clouds
+  };
+
   std::vector<Plane> planes;       ///< largest area first, ties by centroid
   std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none, kFloater
   Box box;                         ///< of the source without its floaters
   double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
-  double distance = 0;    ///< metres: the region growing distance used; kLeastDistance or less
-                          ///< where no noise asks for more
+  double distance = 0;    ///< metres: the region growing distance used
+  Surface surface = Surface::kExact;
   std::vector<char> is_side;  ///< per plane: of a round shape (rounds/rounds.h), exact and as good
                               ///< as its neighbours, however small; empty: none is
   std::vector<std::string> warnings;
 
+  bool is_clean() const { return surface != Surface::kNoisy; }
   bool has_side(int plane) const { return !is_side.empty() && is_side[plane]; }
 };
+
+/// As the growing distance alone tells, which is what a scene file holds: kClean or kNoisy. No
+/// later room tells kExact from kClean.
+Planes::Surface surface_at(double distance);
 
 /// `source` is in its local frame (read/frame.h). Deterministic; uses threads. Throws
 /// Error{kProcess} when no plane is found.

@@ -9,6 +9,8 @@
 // Notation: n normal, d offset; family = wall directions that are parallel or orthogonal; azimuth =
 // angle of a horizontal direction from x; tilt = angle of a normal from z. "Canonical" = the one of
 // ±(n, d) whose first non-zero of (z, x, y) is positive.
+#include "regularize.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -16,8 +18,9 @@
 #include <map>
 #include <numeric>
 
+#include "core/flat.h"
+#include "growing.h"
 #include "parameters.h"
-#include "parts.h"
 
 namespace colod::regions {
 namespace {
@@ -46,16 +49,6 @@ double crossing_cost(const Region& large, const Region& small, double distance) 
   return std::abs(mean) <= kCentred * rms && small.area <= kCrossedArea * large.area
              ? rms / (kCrossedRms * distance)
              : std::numeric_limits<double>::infinity();
-}
-
-bool covers(const std::array<Vec3, 3>& triangle, const Vec3& normal, const Vec3& x) {
-  int left = 0, right = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& from = triangle[k];
-    const double side = (triangle[(k + 1) % 3] - from).cross(x - from).dot(normal);
-    left += side >= 0, right += side <= 0;
-  }
-  return left == 3 || right == 3;
 }
 
 /// Two regions that look opposite ways are sides of one sheet when they lie over each other. What

@@ -1,11 +1,13 @@
 // Based on: rounds/rounds.h. Differs: --rules robust only. The sides of a round shape are planes of
 // their own from the start: grown like walls they join in patches, and what is left of them has no
 // plane. Notation: –
+#include "round.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "parameters.h"
-#include "parts.h"
+#include "rounds/reduce.h"
 #include "rounds/rounds.h"
 
 namespace colod::regions {

@@ -8,7 +8,7 @@
 namespace colod::parameters::rounds {
 
 constexpr double kMostStep = 31 * std::numbers::pi / 180;  ///< twelve sides and more are round
-constexpr double kExact = 0.003;  ///< metres that a side's corners may be off its plane
+constexpr double kOffPlane = 0.003;  ///< metres that a side's corners may be off its plane
 constexpr double kLeastBend =
     0.05 * (std::numbers::pi / 180);  // between faces of two sides: small near an apex
 constexpr double kLeastStep = 1.5 * (std::numbers::pi / 180);

@@ -3,13 +3,15 @@
 // that stays gets fewer sides, as many as every other one of the layer.
 // Notation: a run is a smooth part of the profile, whose rows follow each other with about the same
 // length; a chord is a row of the result.
+#include "reduce.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "parameters.h"
-#include "parts.h"
+#include "sides.h"
 
 namespace colod {
 namespace {

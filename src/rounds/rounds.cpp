@@ -14,7 +14,9 @@
 #include <numbers>
 #include <tuple>
 
-#include "parts.h"
+#include "core/flat.h"
+#include "sides.h"
+#include "stretches.h"
 
 namespace colod {
 namespace rounds {
@@ -26,8 +28,6 @@ constexpr std::size_t kSamples = 96;  // meridians that votes begin with
 constexpr std::size_t kPartners = 4;  // of each
 constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 std::vector<BentEdge> bent_edges(const Facets& facets) {
   struct Use {

@@ -2,15 +2,14 @@
 // Differs: the paper has no such step.
 // Notation: turned back by its column, a side is a straight line in the half-plane of (away from
 // the axis, along it): normal n, distance d. All sides of a row are one line there.
+#include "sides.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
-#include "parts.h"
-
-namespace colod {
-namespace rounds {
+namespace colod::rounds {
 namespace {
 
 constexpr std::size_t kMostRows = 400;
@@ -116,7 +115,7 @@ std::vector<Line> find_lines(const Facets& facets, const std::vector<int>& found
                              const RoundShape& shape) {
   std::vector<Line> best;
   std::size_t most = 0;
-  for (const double exact : {kExact, kExact / 3, kExact / 15}) {
+  for (const double exact : {kOffPlane, kOffPlane / 3, kOffPlane / 15}) {
     std::vector<Line> lines = Sorter(facets, founders, shape, exact).lines();
     std::erase_if(lines, [&](const Line& line) { return !is_row(line, shape); });
     std::size_t faces = 0;
@@ -205,31 +204,4 @@ bool find_sides(const Facets& facets, const std::vector<int>& founders, RoundSha
   return !shape.sides.empty();
 }
 
-}  // namespace rounds
-
-Vec3 RoundShape::direction(int column) const {
-  const double azimuth = column * step;
-  return std::cos(azimuth) * across + std::sin(azimuth) * axis.cross(across);
-}
-
-Vec3 RoundShape::normal(int row, int column) const {
-  const Vec2 n = rows[row].normal();
-  return (stretch.inverse().transpose() * (n.x() * direction(column) + n.y() * axis)).normalized();
-}
-
-double RoundShape::offset(int row, int column) const {
-  const Vec2& x = rows[row].from;
-  return normal(row, column).dot(stretch * (center + x.x() * direction(column) + x.y() * axis));
-}
-
-std::array<Vec3, 4> RoundShape::corners(int row, int column) const {
-  const Vec3 out = direction(column), beside = axis.cross(out);
-  const auto at = [&](const Vec2& x, double side) {
-    return Vec3(stretch * (center + x.x() * out + x.y() * axis +
-                           side * std::abs(x.x()) * std::tan(step / 2) * beside));
-  };
-  const Row& r = rows[row];
-  return {at(r.from, -1), at(r.from, 1), at(r.to, 1), at(r.to, -1)};
-}
-
-}  // namespace colod
+}  // namespace colod::rounds

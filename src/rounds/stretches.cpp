@@ -2,6 +2,8 @@
 // elliptical plan the spread says how it was narrowed.
 // Differs: the paper has no such step.
 // Notation: –
+#include "stretches.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +12,6 @@
 
 #include "core/flat.h"
 #include "core/union_find.h"
-#include "parts.h"
 
 namespace colod::rounds {
 namespace {

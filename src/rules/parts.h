@@ -10,6 +10,8 @@ std::vector<RuleInfo> plane_rules();       ///< growing and regularity
 std::vector<RuleInfo> outline_rules();     ///< outlines, orientation, visibility
 std::vector<RuleInfo> segment_rules();     ///< segments
 std::vector<RuleInfo> coanalysis_rules();  ///< selection, clustering, layers
-std::vector<RuleInfo> chain_rules();       ///< extraction and the chain of layers
+std::vector<RuleInfo> element_rules();     ///< elements
+std::vector<RuleInfo> extraction_rules();  ///< extraction
+std::vector<RuleInfo> chain_rules();       ///< a layer's planes and tolerance, the chain of layers
 
 }  // namespace colod::rules

@@ -1,5 +1,6 @@
 // The rows of extraction and of the chain of layers.
 #include "coanalysis/parameters.h"
+#include "extraction/parameters.h"
 #include "measure/parameters.h"
 #include "parts.h"
 #include "pipeline/parameters.h"
@@ -25,9 +26,19 @@ std::vector<RuleInfo> layer_rules() {
            "Segments are told by what rays meet, not by what a surface needs: layer 0 had fins "
            "before gables, lost walls and notches. On airborne clouds a sixth less mean "
            "distance for 4 % more polygons.",
-       .parameters = {{"plane", "", coanalysis::kSpareShare,
-                       "of all area: smaller planes never join"},
-                      {"set", "", coanalysis::kSparesShare, "of all area: nor does less together"}},
+       .parameters =
+           {{"plane", "", coanalysis::kSpareShare, "of all area: smaller planes never join"},
+            {"set", "", coanalysis::kSparesShare, "of all area: nor does less together"},
+            {"facet", "", extraction::spares::kFacetWorth,
+             "of the diagonal that a facet must bring: at 0.0002 a chimney and a bay came "
+             "to layer 0 without their like"},
+            {"body_facet", "", extraction::spares::kBodyWorth,
+             "likewise of a body of its own, whose layer was found among its like"},
+            {"body_planes", "", static_cast<double>(extraction::spares::kBodyPlanes),
+             "planes of a body"},
+            {"body_facets", "", extraction::spares::kBodyFacets, "facets more: likewise"},
+            {"missed", "", extraction::spares::kMissed,
+             "of the diagonal: mean distance that a set must make up to be tried"}},
        .needs = {},
        .test = "coanalysis/clustering: spares are the larger planes that layer 0 lacks, a set a "
                "plain segment",
@@ -59,8 +70,9 @@ std::vector<RuleInfo> layer_rules() {
       {.rule = Rule::kTolerance,
        .id = "extraction.tolerance",
        .title = "what is within a layer's tolerance is no detail of its own",
-       .sees = "Planes of a layer near a larger one, and cells whose change saves facets.",
-       .does = "Lets planes within the tolerance share a cut, and cells change sides for a price.",
+       .sees = "Which layer it is, and how large and how exact the building.",
+       .does = "Gives extraction.leaders and extraction.facets a tolerance; sides of the rectangle "
+               "snap within it.",
        .paper = "Every plane is cut, every cell stays.",
        .reason = "Noise finds walls twice, and an exact partition keeps every chip: a third to a "
                  "half of the polygons go, the mean distance stays within a few per cent.",

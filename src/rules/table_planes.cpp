@@ -57,7 +57,7 @@ std::vector<RuleInfo> growing_rules() {
        .does = "Averages normals over neighbours, twice, for the test of --angle only.",
        .paper = "The paper tests raw normals.",
        .reason = "Faces of scans turn by more than 30° on a flat wall.",
-       .parameters = {{"noise", "m", kCleanNoise, "below, normals need no smoothing"}},
+       .parameters = {{"noise", "m", kSmoothedNoise, "below, normals need no smoothing"}},
        .needs = {Rule::kGrowing},
        .test = "planes/planes: a noisy corner of two walls gives two upright, orthogonal planes "
                "that meet",

@@ -104,33 +104,33 @@ std::vector<RuleInfo> alcove_rules() {
 
 std::vector<RuleInfo> form_rules() {
   return {
-      {.rule = Rule::kForms,
-       .id = "segments.forms",
-       .title = "balconies, loggias, bays, dormers and recesses are whole",
-       .sees = "Planes that stand to each other as those of a balcony, a loggia or shop front, a "
-               "bay, a dormer, a window's or a door's recess.",
+      {.rule = Rule::kElementSegments,
+       .id = "segments.elements",
+       .title = "an element is one segment",
+       .sees = "Balconies, loggias, bays, dormers and windows (elements.*).",
        .does = "Makes them one segment: that which has most of them and little else, or a new one.",
        .paper = "Rays alone decide.",
        .reason = "Rays give a balcony's floor to the body, a loggia's ceiling and cheeks and a "
                  "window's reveals to several segments.",
        .parameters = {{"most_others", "", kMostOthers,
-                       "of the form's area: planes of others in the segment that takes it"},
-                      {"same", "", kSameHollow,
+                       "of the element's area: planes of others in the segment that takes it"},
+                      {"same", "", kSameElement,
                        "of its area that an earlier one has taken: it is that one"}},
        .needs = {},
-       .test = "elements/elements: trays and niches are segments of their own, whole",
+       .test = "elements/elements: balconies and loggias are segments of their own, whole",
        .made_on = {"ingolstadt-north-scan", "ingolstadt-north", "synth", "synth-scan"}},
-      {.rule = Rule::kShafts,
-       .id = "segments.shafts",
+      {.rule = Rule::kChimneySegments,
+       .id = "segments.chimneys",
        .title = "a chimney's walls leave a detail that is mostly something else",
        .sees = "A chimney whose walls lie in one small segment with larger planes.",
        .does = "Makes them a segment of their own.",
        .paper = "Rays alone decide.",
        .reason = "A chimney of which a scan shows a corner only shared a dormer's segment.",
-       .parameters = {{"reach", "m", kShaftReach, "around it: planes there are its own"},
-                      {"most_share", "", kMostShare,
-                       "a segment of more than this part of the voxels keeps shafts: two windows' "
-                       "reveals look like one"}},
+       .parameters =
+           {{"reach", "m", kChimneyReach, "around it: planes there are its own"},
+            {"most_share", "", kMostShare,
+             "a segment of more than this part of the voxels keeps chimneys: two windows' "
+             "reveals look like one"}},
        .needs = {},
        .test = "elements/elements: a chimney's corner leaves a detail that is mostly something "
                "else, not the body",

@@ -128,7 +128,7 @@ RuleInfo round_sides_rule() {
            {"least_step", "°", rounds::kLeastStep * kDegrees, "finer steps are not told apart"},
            {"least_bend", "°", rounds::kLeastBend * kDegrees,
             "between faces of two sides: small near an apex"},
-           {"exact", "m", rounds::kExact, "that a side's corners may be off its plane"},
+           {"off_plane", "m", rounds::kOffPlane, "that a side's corners may be off its plane"},
            {"on_axis", "m", rounds::kOnAxis, "files have mm, and narrow sides turn by them"},
            {"same_step", "", rounds::kSameStep, "of the step: how far steps may differ"},
            {"least_meridians", "", rounds::kLeastMeridians, "edges between columns that agree"},

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <map>
 
+#include "ownership.h"
 #include "rules.h"
 
 namespace colod {
@@ -72,8 +73,8 @@ Segments paper_segments(const Planes& planes, const SegmentOptions& options) {
     draft.segments[first_a + g].is_alcove = is_mostly_reversed(a.groups.groups[g], is_reversed);
   const int first_c = append_segments(grid_c, c, draft);
   draft.coverage = overlay_coverage(grid_a, a.groups, first_a, grid_c, c.groups, first_c);
-  if (options.rules.has(Rule::kForms) || options.rules.has(Rule::kShafts)) {
-    give_to_hollows(planes, grid_a, options, draft);
+  if (options.rules.has(Rule::kElementSegments) || options.rules.has(Rule::kChimneySegments)) {
+    give_to_elements(planes, grid_a, options, draft);
     cover_plain(draft);
   }
   Segments out = finish_segments(planes, std::move(draft));

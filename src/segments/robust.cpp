@@ -15,6 +15,7 @@
 #include <algorithm>
 
 #include "assignment.h"
+#include "ownership.h"
 #include "parameters.h"
 #include "rules.h"
 
@@ -95,7 +96,7 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   SegmentDraft draft;
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
-  give_to_hollows(planes, grid, options, draft);
+  give_to_elements(planes, grid, options, draft);
   cover_plain(draft);
   return finish_segments(planes, std::move(draft));
 }

@@ -38,12 +38,6 @@ int append_segments(const HitGrid& grid, const OwnedGroups& owned, SegmentDraft&
 /// segment of all planes, with a warning.
 Segments finish_segments(const Planes& planes, SegmentDraft draft);
 
-/// The planes of each tray, and of each niche all of whose planes are smaller than `alcove_area`,
-/// become one segment (Rule::kForms), and the walls of a chimney that its segment has little of
-/// (Rule::kShafts); what was known of the coverage is void.
-void give_to_hollows(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
-                     SegmentDraft& draft);
-
 /// The coverage by plain segments that share no voxel.
 void cover_plain(SegmentDraft& draft);
 

@@ -55,8 +55,8 @@ void mark_spires(const Planes& planes, std::vector<Segment>& segments) {
     double own = -std::numeric_limits<double>::infinity();
     for (const int p : segments[s].planes)
       for (const Vec3& v : planes.planes[p].outline.vertices) own = std::max(own, v.z());
-    if (s > 0 && own > top + least && segments[s].form == Form::kPlain)
-      segments[s].form = Form::kSpire;
+    if (s > 0 && own > top + least && segments[s].kind == ElementKind::kPlain)
+      segments[s].kind = ElementKind::kSpire;
     top = std::max(top, own);
   }
 }
@@ -95,7 +95,7 @@ OwnedGroups own_groups(const Planes& planes, const HitGrid& grid,
 void cover_plain(SegmentDraft& draft) {
   draft.coverage.clear();
   for (std::size_t s = 0; s < draft.segments.size(); ++s)
-    if (draft.segments[s].form == Form::kPlain)
+    if (draft.segments[s].kind == ElementKind::kPlain)
       draft.coverage.push_back(
           {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
 }
@@ -155,7 +155,7 @@ Segments finish_segments(const Planes& planes, SegmentDraft draft) {
       out.coverage.push_back({{static_cast<int>(s)}, static_cast<double>(out.segments[s].voxels)});
   double total = 0;
   for (const Coverage& c : out.coverage) total += c.share;
-  if (!(total > 0)) {  // nothing but hollows
+  if (!(total > 0)) {  // nothing but elements
     for (Coverage& c : out.coverage) c.share = 1;
     total = static_cast<double>(out.coverage.size());
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/element_kind.h"
 #include "core/rules.h"
 #include "planes/planes.h"
 #include "visibility/visibility.h"
@@ -18,15 +19,12 @@ struct SegmentOptions {
   VisibilityOptions visibility;    ///< what the rules decide of it is not read
 };
 
-/// What planes enclose only in part or rays do not part from the body is a kind of its own
-/// (elements/elements.h), and so is what makes the building much taller: a spire. A scene file
-/// holds the number.
-enum class Form { kPlain, kTray, kNiche, kDormer, kBay, kSpire, kRecess };
-
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one
   bool is_alcove = false;   ///< a recess: its voxels lie outside the building
-  Form form = Form::kPlain;
+  /// Of an element (elements/elements.h) or a spire, which makes the building much taller; chimneys
+  /// stay plain: rays part them from the body.
+  ElementKind kind = ElementKind::kPlain;
   std::int64_t voxels = 0;
   double volume = 0;  ///< m³, voxels × voxel volume
   double area = 0;    ///< m² of its planes

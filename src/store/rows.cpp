@@ -24,11 +24,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-Form form_of(std::int64_t stored) {
-  for (const Form form :
-       {Form::kTray, Form::kNiche, Form::kDormer, Form::kBay, Form::kSpire, Form::kRecess})
-    if (stored == static_cast<int>(form)) return form;
-  return Form::kPlain;
+ElementKind kind_of(std::int64_t stored) {
+  for (const ElementKind kind : {ElementKind::kBalcony, ElementKind::kLoggia, ElementKind::kDormer,
+                                 ElementKind::kBay, ElementKind::kSpire, ElementKind::kWindow})
+    if (stored == static_cast<int>(kind)) return kind;
+  return ElementKind::kPlain;
 }
 
 StandIn stand_in_of(std::int64_t stored) {
@@ -103,7 +103,7 @@ struct FacetRecord {
 
 Descriptor read_descriptor(Statement& s) {
   Descriptor d;
-  d.form = form_of(s.integer());
+  d.kind = kind_of(s.integer());
   d.volume = s.real();
   d.area = s.real();
   d.extent = s.real();
@@ -180,7 +180,7 @@ void Store::Impl::put_segments(const Building& b) const {
     s.bind(b.source.name)
         .bind(static_cast<int>(i))
         .bind(static_cast<int>(g.is_alcove))
-        .bind(static_cast<int>(g.form))
+        .bind(static_cast<int>(g.kind))
         .bind(g.voxels)
         .bind(g.volume)
         .bind(g.area)
@@ -252,6 +252,7 @@ void Store::Impl::get_building(Building& b) const {
   check_place({&b.frame.origin, 1}, path);
   b.frame.yaw = s.real();
   b.planes.distance = s.real();
+  b.planes.surface = surface_at(b.planes.distance);
   b.planes.total_area = s.real();
   if (const auto box = s.array<double>(); box.size() == 6)  // infinite where there is no plane
     b.planes.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
@@ -314,7 +315,7 @@ void Store::Impl::get_segments(Building& b) const {
     g.is_alcove = s.integer() != 0;
     g.voxels = s.integer();
     const Descriptor d = read_descriptor(s);
-    g.form = d.form;
+    g.kind = d.kind;
     g.volume = d.volume;
     g.area = d.area;
     if (!s.is_null()) b.layer_of_segment.push_back(static_cast<int>(s.integer()));

@@ -23,6 +23,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "parts.h"
+#include "sweep_order.h"
+#include "sweep_slice.h"
 
 // One build for every processor: the loops that matter exist three times, and the loader picks. No
 // build fuses multiplications with additions, so all give the same bits (CMakeLists.txt).
@@ -38,8 +40,6 @@ namespace colod::casting {
 namespace {
 
 using Code = std::uint16_t;
-/// Voxels that share their candidates.
-constexpr std::size_t kBlock = 64;
 /// A cache line of codes.
 constexpr std::size_t kLine = 32;
 /// Bytes of codes a thread holds at most, more when a row of voxels alone needs it.
@@ -48,149 +48,11 @@ constexpr std::size_t kCodeBytes = std::size_t{8} << 20;
 constexpr std::size_t kOrderBytes = std::size_t{256} << 20;
 /// Slices that a task takes at once, with one look at each order.
 constexpr std::size_t kSlices = 2;
-/// Of a plane's pieces in a slice: those that are off its common line by more than the rounding of
-/// corners explains, in units of the box's radius, are not joined.
-constexpr double kStraight = 0x1p-20;
 /// D takes the upper bits of a word, the code the lower ones: the nearest is the smallest word.
 constexpr std::uint64_t kCodeMask = 0xffff;
 /// Rays nearer than this to a segment's end or to where two segments cross, in units of the box's
 /// radius, graze: single precision decides what they meet, so the reference is asked.
 constexpr double kGraze = 4e-6;
-/// Segments that cross at a flat angle are that near for long: the least sine looked after.
-constexpr double kFlattest = 0.1;
-
-struct Segment {
-  double x0, y0, x1, y1;
-  int plane;  ///< of the slice's, from 0
-};
-
-/// A segment's end, or where two of them cross; rays that pass within `reach` graze.
-struct Corner {
-  double x, y, reach;
-};
-
-/// The outlines in one slice.
-struct Slice {
-  std::vector<Segment> segments;
-  std::vector<int> planes;  ///< rising: of all planes those that are cut
-  std::vector<Corner> corners;
-};
-
-/// One triangle's cut, along and across the plane's line.
-struct Cut {
-  double low, high;
-  std::array<double, 2> from, to;
-};
-
-/// Where the edge between two corners below and above z crosses it. The lower corner comes first,
-/// so that both triangles of an edge get the same point.
-std::array<double, 2> cross(const std::array<float, 3>& below, const std::array<float, 3>& above,
-                            double z) {
-  const double t = (z - below[2]) / (static_cast<double>(above[2]) - below[2]);
-  return {below[0] + t * (static_cast<double>(above[0]) - below[0]),
-          below[1] + t * (static_cast<double>(above[1]) - below[1])};
-}
-
-/// Both ends of the triangle's cut at z; false where it does not reach both sides.
-bool cut_triangle(const std::array<float, 3>* corner, double z,
-                  std::array<std::array<double, 2>, 2>& ends) {
-  int count = 0;
-  for (int i = 0; i < 3; ++i) {
-    const auto &a = corner[i], &b = corner[(i + 1) % 3];
-    if ((a[2] < z) == (b[2] < z)) continue;
-    ends[count++] = a[2] < z ? cross(a, b, z) : cross(b, a, z);
-  }
-  return count == 2;
-}
-
-/// Appends one plane's cuts as segments; those that touch or overlap on one line become one.
-void join_cuts(std::vector<Cut>& cuts, const std::array<double, 2>& normal, double straight,
-               int plane, std::vector<Segment>& out) {
-  std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
-    return std::pair(a.low, a.high) < std::pair(b.low, b.high);
-  });
-  const auto off = [&](const std::array<double, 2>& p) {
-    return normal[0] * p[0] + normal[1] * p[1];
-  };
-  for (std::size_t i = 0; i < cuts.size();) {
-    Cut joined = cuts[i];
-    double least = std::min(off(joined.from), off(joined.to));
-    double most = std::max(off(joined.from), off(joined.to));
-    for (++i; i < cuts.size() && cuts[i].low <= joined.high; ++i) {
-      const double from = off(cuts[i].from), to = off(cuts[i].to);
-      if (std::max({most, from, to}) - std::min({least, from, to}) > straight) break;
-      least = std::min({least, from, to}), most = std::max({most, from, to});
-      if (cuts[i].high > joined.high) joined.high = cuts[i].high, joined.to = cuts[i].to;
-    }
-    out.push_back({joined.from[0], joined.from[1], joined.to[0], joined.to[1], plane});
-  }
-}
-
-/// The voxels of some rows of a slice in the order of their offset across a direction.
-class Order {
- public:
-  std::vector<double> across, along;  ///< padded with zeros to whole blocks
-  std::vector<std::uint32_t> voxel;   ///< counted from the rows' first; as many as there are
-
-  void make(const std::vector<double>& x, const double* y, std::size_t rows, double dx, double dy) {
-    const std::size_t n = x.size(), count = n * rows;
-    // Offsets are linear over the rows, so the corners have the least and the most.
-    low_ = std::numeric_limits<double>::infinity();
-    double high = -low_;
-    for (const double cx : {x.front(), x.back()})
-      for (const double cy : {y[0], y[rows - 1]}) {
-        low_ = std::min(low_, dx * cy - dy * cx);
-        high = std::max(high, dx * cy - dy * cx);
-      }
-    scale_ = high > low_ ? static_cast<double>(count) / (high - low_) : 0;
-    first_.assign(count + 2, 0);
-    std::vector<std::uint32_t> bins(count);
-    for (std::size_t j = 0, v = 0; j < rows; ++j)
-      for (std::size_t i = 0; i < n; ++i, ++v)
-        ++first_[1 + (bins[v] = static_cast<std::uint32_t>(bin(dx * y[j] - dy * x[i])))];
-    for (std::size_t b = 0; b + 1 < first_.size(); ++b) first_[b + 1] += first_[b];
-    voxel.resize(count);
-    for (std::size_t v = 0; v < count; ++v)
-      voxel[first_[bins[v]]++] = static_cast<std::uint32_t>(v);
-    for (std::size_t b = first_.size() - 1; b > 0; --b) first_[b] = first_[b - 1];
-    first_[0] = 0;
-    const auto offset = [&](std::uint32_t v) { return dx * y[v / n] - dy * x[v % n]; };
-    for (std::size_t b = 0; b + 1 < first_.size(); ++b)
-      if (first_[b + 1] - first_[b] > 1)
-        std::sort(voxel.begin() + first_[b], voxel.begin() + first_[b + 1],
-                  [&](std::uint32_t v, std::uint32_t w) {
-                    return std::pair(offset(v), v) < std::pair(offset(w), w);
-                  });
-    const std::size_t padded = (count + kBlock - 1) / kBlock * kBlock;
-    across.assign(padded, 0), along.assign(padded, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-      across[i] = offset(voxel[i]);
-      along[i] = dx * x[voxel[i] % n] + dy * y[voxel[i] / n];
-    }
-  }
-
-  /// How many offsets are below `t`, or not above it.
-  std::size_t count_below(double t) const { return count_until(t, false); }
-  std::size_t count_to(double t) const { return count_until(t, true); }
-
-  static std::size_t bytes(std::size_t count) { return 24 * count; }
-
- private:
-  std::size_t bin(double t) const {
-    return static_cast<std::size_t>(
-        std::clamp((t - low_) * scale_, 0.0, static_cast<double>(first_.size() - 2)));
-  }
-  std::size_t count_until(double t, bool is_closed) const {
-    const std::size_t b = bin(t);  // rising with t: what lies in lower bins is below
-    const auto from = across.begin() + first_[b], to = across.begin() + first_[b + 1];
-    const auto at = is_closed ? std::upper_bound(from, to, t) : std::lower_bound(from, to, t);
-    return static_cast<std::size_t>(at - across.begin());
-  }
-
-  double low_ = 0, scale_ = 0;
-  std::vector<std::uint32_t> first_;  ///< of each of `count` + 1 bins, and behind the last
-};
-
 /// A segment before the rays of one direction: D = start + slope × across − along for the rays
 /// `from` … `to` − 1 of the order.
 struct Candidate {
@@ -284,26 +146,6 @@ COLOD_EVERY_CPU void count_line(const Code* codes, std::size_t stride, int nr, L
   }
 }
 
-/// Where two segments cross, or come so near that a ray could take one end for the other's side.
-void add_crossings(Slice& slice, double reach) {
-  const auto turn = [](const Segment& g, double x, double y) {
-    return ((g.x1 - g.x0) * (y - g.y0) - (g.y1 - g.y0) * (x - g.x0)) /
-           std::hypot(g.x1 - g.x0, g.y1 - g.y0);
-  };
-  for (std::size_t i = 0; i < slice.segments.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const Segment &g = slice.segments[i], &h = slice.segments[j];
-      const double a = turn(g, h.x0, h.y0), b = turn(g, h.x1, h.y1);
-      if (std::min(a, b) > reach || std::max(a, b) < -reach || !(a != b)) continue;
-      const double c = turn(h, g.x0, g.y0), d = turn(h, g.x1, g.y1);
-      if (std::min(c, d) > reach || std::max(c, d) < -reach) continue;
-      const double t = std::clamp(a / (a - b), 0.0, 1.0);
-      const double sine = std::abs(a - b) / std::hypot(h.x1 - h.x0, h.y1 - h.y0);
-      slice.corners.push_back(
-          {h.x0 + t * (h.x1 - h.x0), h.y0 + t * (h.y1 - h.y0), reach / std::max(sine, kFlattest)});
-    }
-}
-
 class Sweeper {
  public:
   Sweeper(const Job& job, HitGrid& grid)
@@ -391,39 +233,7 @@ class Sweeper {
   }
 
   Slice cut(double z) const {
-    Slice slice;
-    std::vector<Cut> cuts;
-    const Soup& soup = job_.soup;
-    std::array<std::array<double, 2>, 2> ends;
-    for (std::size_t i = 0; i < soup.plane_of_triangle.size();) {
-      const int plane = soup.plane_of_triangle[i];
-      const auto& n = job_.normal[plane];
-      const double length = std::hypot(n[0], n[1]);
-      cuts.clear();
-      bool is_touched = false;  // at a corner, as near as single precision sees
-      for (; i < soup.plane_of_triangle.size() && soup.plane_of_triangle[i] == plane; ++i) {
-        for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
-          if (std::abs(soup.corners[c][2] - z) <= reach_) {
-            slice.corners.push_back({soup.corners[c][0], soup.corners[c][1], reach_});
-            is_touched = true;
-          }
-        if (!cut_triangle(&soup.corners[3 * i], z, ends)) continue;
-        const auto on_line = [&](const std::array<double, 2>& p) {
-          return n[0] * p[1] - n[1] * p[0];
-        };
-        double low = on_line(ends[0]), high = on_line(ends[1]);
-        if (low > high) std::swap(low, high), std::swap(ends[0], ends[1]);
-        cuts.push_back({low, high, ends[0], ends[1]});
-      }
-      if (cuts.empty() && !is_touched) continue;
-      // What `normal` times a point rounds by: the steeper the plane, the more of it is length.
-      const double straight = kStraight * 0.5 * grid_.box.diagonal() * std::max(length, 1e-3);
-      join_cuts(cuts, n, straight, static_cast<int>(slice.planes.size()), slice.segments);
-      slice.planes.push_back(plane);
-    }
-    for (const Segment& g : slice.segments)
-      slice.corners.insert(slice.corners.end(), {{g.x0, g.y0, reach_}, {g.x1, g.y1, reach_}});
-    add_crossings(slice, reach_);
+    Slice slice = cut_slice(job_, z, reach_, grid_.box.diagonal());
     if (slice.planes.size() > (kCodeMask - 1) / 2)
       throw Error(Stage::kProcess, "visibility",
                   "more than 32767 planes cross one slice: use --visibility embree");

@@ -56,10 +56,10 @@ struct TwoBoxes {
 
 }  // namespace
 
-TEST_CASE("what is of a form is on one layer, whatever its size") {
+TEST_CASE("what is of a kind is on one layer, whatever its size") {
   std::vector<Descriptor> segments = kinds(2, 12);
-  for (const int i : {0, 2, 4, 1}) segments[i].form = Form::kTray;
-  for (const int i : {3, 5, 6}) segments[i].form = Form::kNiche;
+  for (const int i : {0, 2, 4, 1}) segments[i].kind = ElementKind::kBalcony;
+  for (const int i : {3, 5, 6}) segments[i].kind = ElementKind::kLoggia;
   const std::vector<int> layer = cluster_segments(segments, {}).layer;
   CHECK(layer[8] == 1);
   CHECK(layer[9] == 2);
@@ -282,7 +282,7 @@ TEST_CASE("spares are the larger planes that layer 0 lacks, a set a plain segmen
   for (const double area : {50.0, 20.0, 5.0}) add(area, 0);  // the last one waits
   for (const double area : {8.0, 0.3, 6.0}) add(area, 1);
   add(4, 2), add(0.9, 3), add(5.8, -1);
-  segments.segments[2].form = Form::kBay;
+  segments.segments[2].kind = ElementKind::kBay;
   const auto spares = spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1});
   CHECK(spares == std::vector<std::vector<int>>{{3, 5}, {2, 8}});
   CHECK(spare_planes(planes, segments, {0, 1, 1, 2}, {0, 1, 2, 3, 5, 8}).empty());

@@ -256,19 +256,19 @@ TEST_CASE("robust adds every segment with at least 2 % of the voxels, paper does
 }
 
 TEST_CASE("robust: a spire needs a quarter of the voxels") {
-  const auto has_it = [](Form form, double share) {
+  const auto has_it = [](ElementKind kind, double share) {
     SelectionBuilding church;
     for (const double area : {1000.0, 100.0}) {
       church.segments.emplace_back();
       church.segments.back().area = area;
     }
-    church.segments[1].form = form;
+    church.segments[1].kind = kind;
     church.coverage = {{{0}, 1 - share}, {{1}, share}};
     return select_layer0({church}).is_layer0[0][1] != 0;
   };
-  CHECK(has_it(Form::kSpire, 0.006));
-  CHECK_FALSE(has_it(Form::kSpire, 0.004));
-  CHECK_FALSE(has_it(Form::kPlain, 0.006));
+  CHECK(has_it(ElementKind::kSpire, 0.006));
+  CHECK_FALSE(has_it(ElementKind::kSpire, 0.004));
+  CHECK_FALSE(has_it(ElementKind::kPlain, 0.006));
 }
 
 TEST_CASE("robust: segments of little volume leave, as far as the bound on f_r lets them") {

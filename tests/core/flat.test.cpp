@@ -1,6 +1,7 @@
 #include "core/flat.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace colod;
 
@@ -46,4 +47,33 @@ TEST_CASE("the median of an odd number, of an even one, of none") {
   CHECK(median({3, 1, 2}) == 2);
   CHECK(median({4, 1, 2, 3}) == 2.5);
   CHECK(median({}) == 0);
+}
+
+TEST_CASE("the upper median is a value that was measured") {
+  CHECK(upper_median({3, 1, 2}) == 2);
+  CHECK(upper_median({4, 1, 2, 3}) == 3);
+  CHECK(upper_median({}) == 0);
+}
+
+TEST_CASE("a triangle covers its inside and its border, however it is wound") {
+  const std::array<Vec3, 3> left = {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)};
+  const std::array<Vec3, 3> right = {left[0], left[2], left[1]};
+  for (const auto& triangle : {left, right}) {
+    CHECK(covers(triangle, Vec3::UnitZ(), {0.5, 0.5, 0}));
+    CHECK(covers(triangle, Vec3::UnitZ(), {1, 0, 0}));
+    CHECK_FALSE(covers(triangle, Vec3::UnitZ(), {1.5, 1.5, 0}));
+  }
+}
+
+TEST_CASE("corners stay where a line leaves its chords by more than the tolerance") {
+  const std::vector<Vec2> line = {{0, 0}, {1, 0.05}, {2, 1}, {3, 1.05}, {4, 1}, {5, 0}};
+  const auto distance = [&](int i, int from, int to) {
+    const Vec2 along = line[to] - line[from];
+    return std::abs(cross(along, line[i] - line[from])) / along.norm();
+  };
+  CHECK(corners_between(0, 5, 0.6, distance) == std::vector<int>{3});
+  CHECK(corners_between(0, 5, 0.35, distance) == std::vector<int>{3, 4});
+  CHECK(corners_between(0, 5, 2, distance).empty());
+  CHECK(corners_between(1, 3, 0.1, distance) == std::vector<int>{2});
+  CHECK(corners_between(0, 5, 0, distance) == std::vector<int>{1, 2, 3, 4});
 }

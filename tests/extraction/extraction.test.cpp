@@ -8,33 +8,13 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "extraction/candidates.h"
-#include "extraction/labels.h"
 #include "extraction_helpers.h"
-#include "measure/metrics.h"
 #include "meshes.h"
 
 using namespace colod;
 using namespace colod::test;
 
 namespace {
-
-void expect_solid(const PolygonMesh& mesh, double volume, double tolerance = 1e-3) {
-  const Check c = check(mesh);
-  CHECK(c.is_closed);
-  CHECK(c.is_fan);
-  CHECK_FALSE(c.is_degenerate);
-  CHECK(c.rings_match);
-  CHECK(c.components == 1);
-  CHECK(signed_volume(mesh.mesh()) == Approx(volume).margin(tolerance));
-}
-
-void expect_counts(const PolygonMesh& mesh, std::size_t vertices, std::size_t facets,
-                   std::size_t triangles) {
-  CHECK(mesh.vertices.size() == vertices);
-  CHECK(mesh.facets.size() == facets);
-  CHECK(mesh.triangles.size() == triangles);
-}
 
 /// Triangles with corners anywhere on a grid of that many metres.
 Mesh soup(int triangles, double grid) {
@@ -112,52 +92,6 @@ Mesh read_plain_obj(const std::filesystem::path& path) {
   return mesh;
 }
 
-/// A facet a ring; rings are convex, without holes.
-PolygonMesh polygon_mesh(std::vector<Vec3> vertices, const std::vector<std::vector<int>>& rings) {
-  PolygonMesh m;
-  m.vertices = std::move(vertices);
-  for (const std::vector<int>& ring : rings) {
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-      m.triangles.push_back({ring[0], ring[i], ring[i + 1]});
-      m.facet_of_triangle.push_back(static_cast<int>(m.facets.size()));
-    }
-    const Vec3 normal = face_cross(m.mesh(), m.triangles.back()).normalized();
-    m.facets.push_back({normal, -1, {ring}});
-  }
-  return m;
-}
-
-/// A box whose corner at (4, 4, 4) is cut off, `size` metres along each edge.
-PolygonMesh chipped_box(double size) {
-  std::vector<Vec3> vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
-  vertices[7].x() -= size;
-  vertices.insert(vertices.end(), {{4, 4 - size, 4}, {4, 4, 4 - size}});
-  return polygon_mesh(std::move(vertices), {{0, 2, 3, 1},
-                                            {4, 5, 8, 7, 6},
-                                            {0, 1, 5, 4},
-                                            {2, 6, 7, 9, 3},
-                                            {0, 4, 6, 2},
-                                            {1, 3, 9, 8, 5},
-                                            {7, 8, 9}});
-}
-
-/// A box of 4 m whose top has a ledge along its front, a triangle `depth` metres deep; behind it
-/// the top rises to `height` at the middle of the back.
-PolygonMesh box_with_ledge(double depth, double height) {
-  std::vector<Vec3> vertices = box_mesh({0, 0, 0}, {4, 4, 4}).vertices;
-  vertices.insert(vertices.end(), {{2, depth, 4}, {2, 4, height}});
-  return polygon_mesh(std::move(vertices), {{0, 2, 3, 1},
-                                            {0, 1, 5, 4},
-                                            {0, 4, 6, 2},
-                                            {1, 3, 7, 5},
-                                            {2, 6, 9, 7, 3},
-                                            {4, 5, 8},
-                                            {4, 8, 9},
-                                            {4, 9, 6},
-                                            {5, 9, 8},
-                                            {5, 7, 9}});
-}
-
 /// Extruded L: 10 × 10 without its upper right 6 × 6, 4 high.
 Mesh l_shape() {
   Mesh m;
@@ -173,14 +107,6 @@ Mesh l_shape() {
     m.faces.push_back({f[2], f[1], f[0]});
     m.faces.push_back({f[0] + 6, f[1] + 6, f[2] + 6});
   }
-  return m;
-}
-
-/// Two triangles without thickness.
-Mesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v) {
-  Mesh m;
-  m.vertices = {corner, corner + u, corner + u + v, corner + v};
-  m.faces = {{0, 1, 2}, {0, 2, 3}};
   return m;
 }
 
@@ -295,111 +221,9 @@ TEST_CASE("a chimney leaves a hole in the roof's facet") {
 }
 
 TEST_CASE("paper rules close what is closed") {
-  const Extraction e = extract(gable_house(10, 6, 4, 3), {.is_paper = true});
+  const Extraction e = extract(gable_house(10, 6, 4, 3), {.rules = RuleSet::none()});
   expect_solid(e.mesh, 330);
   CHECK(e.mesh.vertices.size() == 10);
-}
-
-TEST_CASE("cubes that touch along an edge or at a vertex become one manifold") {
-  using Cubes = std::set<std::array<int, 3>>;
-  const std::vector<std::pair<std::array<int, 3>, Cubes>> cases = {
-      {{3, 2, 1}, {{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}, {0, 1, 0}}},
-      {{2, 2, 1}, {{0, 0, 0}, {1, 1, 0}}},
-      {{2, 2, 2}, {{0, 0, 0}, {1, 1, 1}}},
-      {{2, 2, 2}, {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}},
-      {{2, 2, 3},
-       {{0, 0, 0},
-        {1, 0, 0},
-        {0, 1, 0},
-        {1, 1, 0},
-        {0, 0, 1},
-        {1, 1, 1},
-        {0, 0, 2},
-        {1, 0, 2},
-        {0, 1, 2},
-        {1, 1, 2}}},
-      {{3, 3, 3}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 1, 1}, {1, 1, 1}}},
-  };
-  for (const auto& [size, chosen] : cases) {
-    const Partition grid = cubes(size[0], size[1], size[2]);
-    const PolygonMesh mesh = extract_surface(grid, choose_cubes(grid, chosen));
-    const double volume = signed_volume(mesh.mesh());
-    expect_solid(mesh, std::round(volume), 1e-9);
-    CHECK(volume > 0.5);
-  }
-}
-
-TEST_CASE("any choice of cubes gives a closed 2-manifold with the volume of its cells") {
-  const Partition grid = cubes(4, 4, 4);
-  std::uint64_t state = 1;
-  for (int run = 0; run < 60; ++run) {
-    std::vector<char> is_inside(grid.cells.size());
-    for (char& c : is_inside) {
-      state = state * 6364136223846793005ull + 1442695040888963407ull;
-      c = (state >> 33) % 100 < 30 + static_cast<unsigned>(run) % 50;
-    }
-    std::vector<char> mended = is_inside;
-    fill_cavities(grid, mended);
-    mend_pinches(grid, mended);
-    REQUIRE(keep_largest_components(grid, mended, 0.05));
-    fill_cavities(grid, mended);
-    const double volume = static_cast<double>(std::count(mended.begin(), mended.end(), 1));
-    const PolygonMesh mesh = extract_surface(grid, is_inside);
-    const Check c = check(mesh);
-    CHECK((c.is_closed && c.is_fan && !c.is_degenerate && c.rings_match));
-    CHECK(signed_volume(mesh.mesh()) == Approx(volume).margin(1e-9));
-    CHECK(is_closed_manifold(mesh.triangles));
-  }
-}
-
-TEST_CASE("short edges are contracted") {
-  PolygonMesh mesh = extract(gable_house(10, 6, 4, 3)).mesh;
-  CHECK(contract_short_edges(mesh, 1e-3) == 0);
-  CHECK(contract_short_edges(mesh, 4.5) > 0);
-  CHECK(check(mesh).is_closed);
-}
-
-TEST_CASE("no contraction makes the surface cut itself") {
-  const auto add = [](PolygonMesh& mesh, const Mesh& part) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Face& f : part.faces) {
-      mesh.triangles.push_back({f[0] + first, f[1] + first, f[2] + first});
-      mesh.facet_of_triangle.push_back(static_cast<int>(mesh.facets.size()));
-    }
-    mesh.facets.emplace_back();
-  };
-  const PolygonMesh house = extract(gable_house(10, 6, 4, 3)).mesh;
-  PolygonMesh alone = house;
-  const int freely = contract_short_edges(alone, 4.5);
-  int tried = 0, refused = 0;
-  for (double x = 0.3; x < 10; x += 1.3)
-    for (double y = 0.3; y < 6; y += 1.3)
-      for (double z = 0.3; z < 7; z += 1.3) {
-        const Vec3 at(x, y, z);
-        const Mesh bit = box_mesh(at - Vec3::Constant(0.01), at + Vec3::Constant(0.01));
-        PolygonMesh mesh = house, only_bit;
-        add(mesh, bit), add(only_bit, bit);
-        if (check_validity(mesh.mesh()).self_intersections > 0) continue;
-        ++tried;
-        const int bits = contract_short_edges(only_bit, 4.5);
-        refused += contract_short_edges(mesh, 4.5) < freely + bits;
-        CHECK(check_validity(mesh.mesh()).self_intersections == 0);
-      }
-  CHECK(tried > 40);
-  CHECK(refused > 0);
-}
-
-TEST_CASE("a pinched boundary is seen") {
-  CHECK(is_closed_manifold(box_mesh({0, 0, 0}, {1, 1, 1}).faces));
-  Mesh open = box_mesh({0, 0, 0}, {1, 1, 1});
-  open.faces.pop_back();
-  CHECK_FALSE(is_closed_manifold(open.faces));
-  const Partition grid = cubes(2, 2, 2);
-  BoundaryFinder finder(grid);
-  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 1, 0}}))).size() == 1);
-  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 1, 1}}))).size() == 1);
-  CHECK(find_pinches(finder.find(choose_cubes(grid, {{0, 0, 0}, {1, 0, 0}}))).empty());
 }
 
 TEST_CASE("a layer is the same whatever was looked at before") {
@@ -479,191 +303,4 @@ TEST_CASE("what is within the tolerance of a larger plane is no detail of its ow
   const PolygonMesh mesh = extract(step, {.tolerance = 0.3}).mesh;
   expect_counts(mesh, 8, 6, 12);
   expect_solid(mesh, 360);
-}
-
-TEST_CASE("planes that look elsewhere are no leaders, nor are those farther than the tolerance") {
-  const Planes planes = planes_of_mesh(gable_house(8, 6, 5, 0.4));
-  const std::vector<int> all = all_planes(planes);
-  CHECK(find_leaders(planes, all, 0) == all);
-  CHECK(find_leaders(planes, all, 0.3) == all);
-  const std::vector<int> merged = find_leaders(planes, all, 1);  // 15 degrees between the roofs
-  CHECK(std::set<int>(merged.begin(), merged.end()).size() == 6);
-}
-
-TEST_CASE("a chip goes, a chimney stays") {
-  const Mesh house = gable_house(8, 6, 5, 3);
-  const Mesh chip = box_mesh({3, -0.1, 1}, {3.4, 1, 1.4});
-  const Mesh chimney = box_mesh({2, 1, 5}, {2.6, 1.6, 8.5});
-  const PolygonMesh both = extract(join(join(house, chip), chimney)).mesh;
-  CHECK(both.facets.size() == 17);
-  const PolygonMesh one = extract(join(join(house, chip), chimney), {.tolerance = 0.1}).mesh;
-  CHECK(one.facets.size() == 12);
-  CHECK(check(one).is_closed);
-}
-
-TEST_CASE("turning cells saves facets within its limits and never turns forced cells") {
-  // A box of 4 with a step of 0.2 in one corner: 9 facets, 6 without the step.
-  const Planes planes =
-      planes_of_mesh(join(box_mesh({0, 0, 0}, {4, 4, 4}), box_mesh({4, 0, 0}, {4.2, 1, 1})));
-  const std::vector<int> all = all_planes(planes);
-  Sight sight(planes);
-  const CuttingPlan plan = plan_cuts(planes, all, sight.rays, {});
-  const Partition partition = partition_space(plan.planes, plan.box);
-  Evidence evidence = gather_evidence(partition, sight, {});
-  measure_coverage(partition, planes, plan.input, evidence);
-  const std::vector<char> nothing(partition.cells.size(), 0), all_cells(partition.cells.size(), 1);
-  const std::vector<char> before = cut_cells(partition, evidence, nothing);
-  const auto saved = [&](const SimplifyOptions& options, const std::vector<char>& forced) {
-    std::vector<char> is_inside = before;
-    return simplify_cells(partition, evidence, forced, options, is_inside);
-  };
-  CHECK(saved({.facet_volume = 1, .depth = 0.3}, nothing) == 3);
-  CHECK(saved({.facet_volume = 1, .depth = 0.3}, all_cells) == 3);  // the step is taken away
-  CHECK(saved({.facet_volume = 1, .depth = 0.1}, nothing) == 0);
-  CHECK(saved({.facet_volume = 0.01, .depth = 0.3}, nothing) == 0);
-}
-
-TEST_CASE("narrow facets are contracted where their short edges allow it") {
-  PolygonMesh mesh = chipped_box(0.005);
-  expect_solid(mesh, 64);
-  REQUIRE(mesh.facets.size() == 7);
-  CHECK(contract_narrow_facets(mesh, 0.001) == 0);
-  CHECK(contract_narrow_facets(mesh, 0.003) == 2);
-  CHECK(mesh.facets.size() == 6);
-  CHECK(is_closed_manifold(mesh.triangles));
-  for (const auto& facet : mesh.facets) CHECK(measure_facet(mesh, facet).width() > 1);
-}
-
-TEST_CASE("long edges of a narrow facet go where no plane moves by more than its width") {
-  PolygonMesh level = box_with_ledge(0.004, 4.001);
-  CHECK(contract_narrow_facets(level, 0.001) == 0);
-  CHECK(contract_narrow_facets(level, 0.005) == 1);
-  CHECK(level.vertices.size() == 9);
-  CHECK(is_closed_manifold(level.triangles));
-  for (const auto& facet : level.facets) CHECK(measure_facet(level, facet).width() > 0.5);
-
-  PolygonMesh gabled = box_with_ledge(0.004, 40);  // so steep that a roof would move by 8 mm
-  CHECK(contract_narrow_facets(gabled, 0.005) == 0);
-  CHECK(gabled.vertices.size() == 10);
-}
-
-TEST_CASE("what contracting has bent away from its facet is contracted like a narrow one") {
-  PolygonMesh mesh = chipped_box(0.005);
-  const auto narrow = std::find_if(mesh.facets.begin(), mesh.facets.end(), [&](const auto& f) {
-    return measure_facet(mesh, f).width() < 0.1;
-  });
-  REQUIRE(narrow != mesh.facets.end());
-  const int chip = static_cast<int>(narrow - mesh.facets.begin());
-  for (int& f : mesh.facet_of_triangle)
-    if (f == chip) f = (chip + 1) % 7;
-  CHECK(contract_narrow_facets(mesh, 0.003) == 2);
-  CHECK(mesh.facets.size() == 6);
-  CHECK(is_closed_manifold(mesh.triangles));
-}
-
-namespace {
-
-/// A block of 10 × 12 × 14 m with a passage of 3 × 4 m along y, behind a wall 0.4 m thick.
-Mesh block_with_passage() {
-  Mesh m;
-  const std::vector<Vec2> ring = {{0, 0},   {0.4, 0}, {0.4, 4}, {3.4, 4},
-                                  {3.4, 0}, {10, 0},  {10, 14}, {0, 14}};
-  for (const double y : {0.0, 12.0})
-    for (const Vec2& p : ring) m.vertices.emplace_back(p.x(), y, p.y());
-  for (int i = 0; i < 8; ++i) {
-    const int j = (i + 1) % 8;
-    m.faces.push_back({i, j + 8, j});
-    m.faces.push_back({i, i + 8, j + 8});
-  }
-  for (const Face& f :
-       {Face{7, 0, 1}, Face{7, 1, 2}, Face{7, 2, 3}, Face{7, 3, 6}, Face{6, 3, 5}, Face{3, 4, 5}}) {
-    m.faces.push_back(f);
-    m.faces.push_back({f[2] + 8, f[1] + 8, f[0] + 8});
-  }
-  return m;
-}
-
-int find_plane(const Planes& planes, const Vec3& normal, double offset) {
-  for (std::size_t p = 0; p < planes.planes.size(); ++p)
-    if (planes.planes[p].normal.dot(normal) > 0.999 &&
-        std::abs(planes.planes[p].offset - offset) < 1e-6)
-      return static_cast<int>(p);
-  return -1;
-}
-
-}  // namespace
-
-TEST_CASE("a plane that a layer cannot do without joins it") {
-  const Planes planes = planes_of_mesh(block_with_passage());
-  const int inner = find_plane(planes, {1, 0, 0}, 0.4);
-  REQUIRE(inner >= 0);
-  std::vector<int> layer = all_planes(planes), joined;
-  std::erase(layer, inner);
-  Sight sight(planes);
-  const ExtractionOptions options{.tolerance = 0.2};
-  const double volume = 12 * (140 - 12);
-  const Extraction without = extract_layer(planes, layer, sight, options);
-  CHECK(std::abs(signed_volume(without.mesh.mesh()) - volume) > 12);
-  const Extraction with = extract_layer(planes, layer, {{inner}}, sight, options, joined);
-  expect_solid(with.mesh, volume);
-  CHECK(joined == std::vector<int>{inner});
-}
-
-TEST_CASE("a box on a roof does not join a coarse layer") {
-  const Planes planes =
-      planes_of_mesh(join(box_mesh({0, 0, 0}, {12, 10, 9}), box_mesh({5, 4, 9}, {7, 6, 11})));
-  std::vector<int> layer, box, joined = {1};
-  for (const int p : all_planes(planes)) (planes.planes[p].area < 5 ? box : layer).push_back(p);
-  Sight sight(planes);
-  const Extraction e = extract_layer(planes, layer, {box}, sight, {.tolerance = 0.2}, joined);
-  expect_solid(e.mesh, 12 * 10 * 9);
-  CHECK(joined.empty());
-}
-
-TEST_CASE("a wing joins, however many facets it adds") {
-  const Planes planes =
-      planes_of_mesh(join(box_mesh({0, 0, 0}, {12, 10, 9}), box_mesh({12, 1, 0}, {20, 9, 8})));
-  std::vector<int> layer, wing, joined;
-  for (const int p : all_planes(planes)) (planes.planes[p].area < 65 ? wing : layer).push_back(p);
-  Sight sight(planes);
-  const Extraction e = extract_layer(planes, layer, {wing}, sight, {.tolerance = 0.2}, joined);
-  CHECK(signed_volume(e.mesh.mesh()) == Approx(12 * 10 * 9 + 8 * 8 * 8));
-  CHECK(joined == wing);
-}
-
-TEST_CASE("a sheet that stands out of the building becomes a thin body") {
-  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 5});
-  const Mesh canopy = sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0});
-  const Mesh fin = sheet_mesh({0, 0, 5}, {8, 0, 0}, {0, 0, 1});  // the front wall goes on
-  expect_solid(extract(join(house, canopy)).mesh, 240);
-  const PolygonMesh with = extract(join(house, canopy), {.is_finest = true}).mesh;
-  expect_solid(with, 240 + 2 * 1.5 * 0.08);
-  CHECK(with.facets.size() == 11);
-  const PolygonMesh both = extract(join(join(house, canopy), fin), {.is_finest = true}).mesh;
-  expect_solid(both, 240 + 2 * 1.5 * 0.08 + 8 * 1 * 0.08);
-  CHECK(both.facets.size() == 13);
-}
-
-TEST_CASE("sheets that meet are joined at their corners") {
-  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 6});
-  Mesh screen = sheet_mesh({2, -1.2, 2}, {3, 0, 0}, {0, 0, 2});  // front and both sides
-  screen = join(screen, sheet_mesh({2, 0, 2}, {0, -1.2, 0}, {0, 0, 2}));
-  screen = join(screen, sheet_mesh({5, -1.2, 2}, {0, 1.2, 0}, {0, 0, 2}));
-  const PolygonMesh mesh = extract(join(house, screen), {.is_finest = true}).mesh;
-  expect_solid(mesh, 288 + 2 * (3 * 1.2 - (3 - 0.16) * (1.2 - 0.08)));
-  CHECK(mesh.facets.size() == 14);  // three outer, three inner, top and bottom
-}
-
-TEST_CASE("steps, sheets that touch nothing and noise are no thin bodies") {
-  const Mesh house = box_mesh({0, 0, 0}, {8, 6, 5});
-  const Mesh step = join(house, sheet_mesh({3, -1.5, 0.3}, {2, 0, 0}, {0, 1.5, 0}));
-  const double with_step = signed_volume(extract(step).mesh.mesh());
-  const ExtractionOptions options{.is_finest = true};
-  expect_solid(extract(step, options).mesh, with_step);
-  expect_solid(extract(join(house, sheet_mesh({3, -2.5, 3}, {2, 0, 0}, {0, 1.5, 0})), options).mesh,
-               240);
-  Planes planes = planes_of_mesh(join(house, sheet_mesh({3, -1.5, 3}, {2, 0, 0}, {0, 1.5, 0})));
-  planes.distance = 0.1;  // found in noise
-  Sight sight(planes);
-  expect_solid(extract_layer(planes, all_planes(planes), sight, options).mesh, 240);
 }

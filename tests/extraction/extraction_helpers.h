@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -11,8 +12,8 @@
 #include <vector>
 
 #include "extraction/extraction.h"
-#include "extraction/surface.h"
 #include "meshes.h"
+#include "partition/partition.h"
 
 namespace colod::test {
 
@@ -128,6 +129,23 @@ inline Check check(const PolygonMesh& mesh) {
     result.rings_match &= std::abs(sum.dot(mesh.facets[f].normal) - by_triangles[f]) < 1e-6;
   }
   return result;
+}
+
+inline void expect_solid(const PolygonMesh& mesh, double volume, double tolerance = 1e-3) {
+  const Check c = check(mesh);
+  CHECK(c.is_closed);
+  CHECK(c.is_fan);
+  CHECK_FALSE(c.is_degenerate);
+  CHECK(c.rings_match);
+  CHECK(c.components == 1);
+  CHECK(signed_volume(mesh.mesh()) == Approx(volume).margin(tolerance));
+}
+
+inline void expect_counts(const PolygonMesh& mesh, std::size_t vertices, std::size_t facets,
+                          std::size_t triangles) {
+  CHECK(mesh.vertices.size() == vertices);
+  CHECK(mesh.facets.size() == facets);
+  CHECK(mesh.triangles.size() == triangles);
 }
 
 /// A grid of unit cubes as a partition, x fastest.

@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Extraction result =
         extract_layer(b.planes, planes, sight,
-                      {.is_paper = options.rules.is_none(),
+                      {.rules = options.rules,
                        .nr = 8,
                        .tolerance = options.rules.is_all() && data[0] & 32 ? 0.2 : 0});
     if (!check_validity(result.mesh.mesh()).is_watertight) std::abort();

@@ -22,11 +22,11 @@ Source house() {
   return s;
 }
 
-TruthBuilding truth(double depth = 1) { return {"house", {{"bay", 1, 1, depth}}, {0}}; }
+TruthBuilding truth(double depth = 1) { return {"house", {{ElementKind::kBay, 1, 1, depth}}, {0}}; }
 
-PlacedPart placed(const std::string& building, const std::string& type, int first) {
+PlacedPart placed(const std::string& building, ElementKind kind, int first) {
   PlacedPart p;
-  p.building = building, p.type = type, p.first = first, p.is_seen = true, p.depth = 1;
+  p.building = building, p.kind = kind, p.first = first, p.is_seen = true, p.depth = 1;
   p.present.assign(3, 0);
   for (int k = std::max(0, first); first >= 0 && k < 3; ++k) p.present[k] = 1;
   return p;
@@ -61,8 +61,8 @@ TEST_CASE(
 TEST_CASE("the tally counts instances, those that never appear, and buildings that agree") {
   std::vector<PlacedPart> parts;
   for (const char* b : {"a", "b", "c"})
-    for (int i = 0; i < 3; ++i) parts.push_back(placed(b, "dormer", 1));
-  parts[8].first = 2, parts.push_back(placed("d", "dormer", -1));
+    for (int i = 0; i < 3; ++i) parts.push_back(placed(b, ElementKind::kDormer, 1));
+  parts[8].first = 2, parts.push_back(placed("d", ElementKind::kDormer, -1));
   const auto types = tally_parts(parts, 3);
   REQUIRE(types.size() == 1);
   const TypeConsistency& t = types[0];
@@ -88,10 +88,11 @@ TEST_CASE("truth files: synth's, labels, and what is neither") {
     {"type": "bay", "instance": 1, "level": 1, "depth": 0.8}]}]})");
   CHECK(synth.at(0).main_building == std::vector<int>{0});
   CHECK(synth.at(0).parts.at(0).depth == 0.8);
+  CHECK(synth.at(0).parts.at(0).kind == ElementKind::kBay);
   const Truth labels = read(R"({"a": {"objects": [{"index": 4, "type": "WallSurface"},
     {"index": 2, "type": "BuildingInstallation", "function_guess_from_geometry": "chimney?"}]}})");
   CHECK(labels.at(0).main_building == std::vector<int>{4});
-  CHECK(labels.at(0).parts.at(0).type == "chimney");
+  CHECK(labels.at(0).parts.at(0).kind == ElementKind::kChimney);
   CHECK_THROWS_AS(read("{}"), Error);
   CHECK_THROWS_AS(read("[1"), Error);
   CHECK_THROWS_AS(read(R"({"buildings": [{"parts": 3}]})"), Error);

@@ -8,7 +8,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "meshes.h"
-#include "planes/parts.h"
+#include "planes/items.h"
+#include "planes/regularize.h"
 #include "planes_helpers.h"
 #include "read/frame.h"
 
@@ -164,6 +165,17 @@ TEST_CASE("one and two threads give the same bits") {
   const Planes two = detect_planes(source);
   limit_threads(0);
   CHECK(same_planes(one, two));
+}
+
+TEST_CASE("how exact a surface is, is decided with the planes") {
+  const auto surface_with = [](double noise) {
+    return detect_planes(as_source(noisy_corner(6, 4, noise))).surface;
+  };
+  CHECK(surface_with(0) == Planes::Surface::kExact);
+  CHECK(surface_with(0.003) == Planes::Surface::kClean);
+  CHECK(surface_with(0.02) == Planes::Surface::kNoisy);
+  CHECK(surface_at(kLeastDistance) == Planes::Surface::kClean);
+  CHECK(surface_at(2 * kLeastDistance) == Planes::Surface::kNoisy);
 }
 
 TEST_CASE("a cloud of a box gives six planes of about its areas") {

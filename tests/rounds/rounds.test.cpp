@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "rounds/reduce.h"
 #include "rounds_helpers.h"
 
 using namespace colod;

@@ -82,6 +82,23 @@ Source airborne_cloud() {
   return s;
 }
 
+/// Up to its layers' segments.
+Building segmented(Source source) {
+  Scene scene;
+  scene.buildings.push_back(
+      segment_building({std::move(source), 0, {}}, with_rules(RuleSet::all(), 24)));
+  analyze_scene(scene, with_rules(RuleSet::all(), 24));
+  return scene.buildings[0];
+}
+
+bool has_same_layers(const Building& a, const Building& b) {
+  return std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
+                    [](const Layer& x, const Layer& y) {
+                      return x.mesh.vertices == y.mesh.vertices &&
+                             x.mesh.triangles == y.mesh.triangles;
+                    });
+}
+
 bool has_stand_in(const Scene& scene, StandIn reason) {
   return std::any_of(scene.buildings.begin(), scene.buildings.end(), [&](const Building& b) {
     return std::any_of(b.layers.begin(), b.layers.end(),
@@ -126,6 +143,24 @@ TEST_CASE("each rule of planes changes a source that was made for it") {
     INFO(info_of(rule).id);
     CHECK(std::any_of(scans.begin(), scans.end(),
                       [&](const Source& s) { return changes_planes(rule, s); }));
+  }
+}
+
+TEST_CASE("each rule of extraction changes a layer of a source made for it") {
+  const std::vector<Building> houses{segmented(neighbourhood(2, false)[0]),
+                                     segmented(neighbourhood(4, true, 15)[3])};
+  std::vector<Building> before = houses;
+  for (Building& b : before) mesh_building(b, with_rules(RuleSet::all(), 24));
+  for (const Rule rule : {Rule::kSides, Rule::kElementCuts, Rule::kLeaders, Rule::kPruning,
+                          Rule::kRings, Rule::kMinCut, Rule::kFacetPrice, Rule::kPriceCap}) {
+    INFO(info_of(rule).id);
+    bool is_changed = false;
+    for (std::size_t i = 0; i < houses.size() && !is_changed; ++i) {
+      Building b = houses[i];
+      mesh_building(b, with_rules(RuleSet::all().without(rule), 24));
+      is_changed = !has_same_layers(before[i], b);
+    }
+    CHECK(is_changed);
   }
 }
 

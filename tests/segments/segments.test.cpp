@@ -336,8 +336,8 @@ TEST_CASE("what stands a tenth of the diagonal above all larger segments is a sp
         as_source(join(box_mesh({0, 0, 0}, {10, 8, 7}), box_mesh({2, 2, 7}, {5, 5, 7 + height}))));
     const Segments s = build_segments(planes, coarse());
     const auto spires = std::count_if(s.segments.begin(), s.segments.end(),
-                                      [](const Segment& g) { return g.form == Form::kSpire; });
+                                      [](const Segment& g) { return g.kind == ElementKind::kSpire; });
     CHECK(spires == (height > 2 ? 1 : 0));
-    CHECK(s.segments[0].form == Form::kPlain);
+    CHECK(s.segments[0].kind == ElementKind::kPlain);
   }
 }

@@ -59,7 +59,7 @@ TEST_CASE("faces point to parts, and parts are as large as their faces") {
 TEST_CASE("levels follow the size rule") {
   std::map<std::string, std::set<int>> levels;
   for (const SynthBuilding& b : clean(28, 1))
-    for (const SynthPart& p : b.parts) levels[p.type].insert(p.level);
+    for (const SynthPart& p : b.parts) levels[name_of(p.kind)].insert(p.level);
   const std::map<std::string, std::set<int>> expected = {
       {"body", {0}},   {"roof", {0}},    {"tower", {0}},    {"window", {2}},
       {"door", {2}},   {"balcony", {1}}, {"bay", {1}},      {"recess", {1}},
@@ -72,7 +72,7 @@ TEST_CASE("a model has the same height wherever it repeats, and many do") {
   const auto all = clean(20, 3);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const SynthPart& p : all[i].parts) {
-      if (p.type != "window" || p.model == "roof_window") continue;
+      if (p.kind != ElementKind::kWindow || p.model == "roof_window") continue;
       heights[p.model].insert(static_cast<int>(std::lround(p.box.size().z() * 1e4)));
       buildings[p.model].insert(static_cast<int>(i));
     }
