@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", s.threads);
   app.add_flag("--json", s.is_json, "one line");
   CLI11_PARSE(app, argc, argv);
-  s.selection.is_paper = s.clustering.is_paper = is_paper;
+  s.selection.rules = s.clustering.rules = is_paper ? RuleSet::none() : RuleSet::all();
   s.selection.seed = s.clustering.seed = s.seed;
   limit_threads(s.threads);
   std::printf("%s\n", run(s).dump(s.is_json ? -1 : 2).c_str());

@@ -156,12 +156,12 @@ json run_building(const std::string& path, const json& labels, const Settings& s
   seconds["read"] = lap();
 
   PlaneOptions plane_options;
-  plane_options.is_paper = settings.plane_rules == "paper";
+  plane_options.rules = settings.plane_rules == "paper" ? RuleSet::none() : RuleSet::all();
   const Planes planes = detect_planes(source, plane_options);
   seconds["planes"] = lap();
 
   SegmentOptions options;
-  options.is_paper = settings.rules == "paper";
+  options.rules = settings.rules == "paper" ? RuleSet::none() : RuleSet::all();
   options.alcove_area = settings.alcove_area;
   options.visibility.ns = settings.ns, options.visibility.nr = settings.nr;
   const Segments segments = build_segments(planes, options);

@@ -125,7 +125,7 @@ void print_cbc(const Answer& cbc) {
 
 void run(int size, const Settings& s) {
   SelectionOptions options;
-  options.is_paper = s.is_paper, options.gap = 0;
+  options.rules = s.is_paper ? RuleSet::none() : RuleSet::all(), options.gap = 0;
   const auto scene = scene_of(size, s, options);
   const Model model = build_model(scene, options);
   const LinearProgram program = write_program(model);

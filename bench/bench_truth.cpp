@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   app.add_flag("--parts", s.has_parts,
                "with --json: every part, and the layer on which it appears");
   CLI11_PARSE(app, argc, argv);
-  s.options.rules = s.rules == "paper" ? Rules::kPaper : Rules::kRobust;
+  s.options.rules = s.rules == "paper" ? RuleSet::none() : RuleSet::all();
   try {
     validate(s.options);
     limit_threads(s.threads);

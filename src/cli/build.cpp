@@ -108,7 +108,10 @@ Run add_build(CLI::App& app) {
                  "a ground truth of parts: how consistent the layers are goes into report.json")
       ->check(CLI::ExistingFile);
   add_run_options(app, a->run);
-  return [a] { return build(*a); };
+  return [a] {
+    switch_off_dependents(a->options, a->run.log());
+    return build(*a);
+  };
 }
 
 }  // namespace colod::cli

@@ -18,6 +18,7 @@ Run add_eval(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_synth(CLI::App& app);
 Run add_preview(CLI::App& app);
+Run add_rules(CLI::App& app);
 Run add_view(CLI::App& app);
 
 }  // namespace colod::cli

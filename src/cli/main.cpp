@@ -58,6 +58,8 @@ int run(int argc, char** argv) {
   add("info", "what a mesh, GLB or tileset holds, JSON on stdout", colod::cli::add_info);
   add("synth", "a procedural neighbourhood with ground truth", colod::cli::add_synth);
   add("preview", "pictures of meshes side by side, as one PNG", colod::cli::add_preview);
+  add("rules", "the rules by which colod differs from its paper: list, page, JSON",
+      colod::cli::add_rules);
   add("view", "a page on this machine that streams what build or export wrote",
       colod::cli::add_view);
   try {

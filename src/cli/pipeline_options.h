@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "log.h"
 #include "numbers.h"
+#include "rules/rules.h"
 #include "store/store.h"
 
 namespace colod::cli {
@@ -82,16 +83,45 @@ inline void check_cost(const Options& options, std::size_t buildings) {
   throw Error(Stage::kUsage, "--ns", cause.str());
 }
 
-/// --rules, --visibility, --layering and every row of the option table; --rules comes first, since
-/// the others' defaults hang on it.
-inline void add_pipeline_options(CLI::App& app, Options& options) {
+/// --rules, which the others' defaults hang on, and --without.
+inline void add_rule_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--rules",
          [&options](const std::string& v) {
-           options = default_options(v == "paper" ? Rules::kPaper : Rules::kRobust);
+           options = default_options(v == "paper" ? RuleSet::none() : RuleSet::all());
          },
          "robust (default) or the paper's letter")
       ->check(CLI::IsMember({"robust", "paper"}));
+  app.add_option_function<std::vector<std::string>>(
+         "--without",
+         [&options](const std::vector<std::string>& ids) {
+           if (options.rules.is_none())
+             throw Error(Stage::kUsage, "--without", "--rules paper has no rule on");
+           for (const std::string& id : ids)
+             options.rules = options.rules.without(rule_named(id, "--without"));
+         },
+         "rules to switch off, with commas between them; colod rules lists them")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
+/// Rules that need one that is off are off, too, which is said.
+inline void switch_off_dependents(Options& options, const Log& log) {
+  const RuleSet met = with_needs_met(options.rules);
+  if (met == options.rules) return;
+  std::string ids;
+  for (const RuleInfo& info : rule_table())
+    if (options.rules.has(info.rule) && !met.has(info.rule))
+      ids.append(ids.empty() ? "" : ", ").append(info.id);
+  log.message(
+      Level::kWarning,
+      "--without: " + ids + " off as well, for want of what is off: colod rules ID names it");
+  options.rules = met;
+}
+
+/// --rules, --without, --visibility, --layering and every row of the option table.
+inline void add_pipeline_options(CLI::App& app, Options& options) {
+  add_rule_options(app, options);
   app.add_option_function<std::string>(
          "--visibility",
          [&options](const std::string& v) { options.visibility = visibility_of(v); },

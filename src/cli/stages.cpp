@@ -98,6 +98,17 @@ std::vector<Store> open_all(const std::vector<std::string>& files) {
   return stores;
 }
 
+/// What was segmented by other rules is not analysed together.
+void check_same_rules(const std::vector<Store>& stores, const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    stores[i].check_rules();
+    if (!(stores[i].options().rules == stores.front().options().rules))
+      throw Error(Stage::kInput, files[i],
+                  "was segmented with other rules than " + files.front() +
+                      ": run colod segment again with the same --rules and --without");
+  }
+}
+
 /// Layers that are missing, or older than the segments, would be nonsense.
 void check_analysed(const Store& store, const std::vector<std::string>& names) {
   for (const std::string& name : names)
@@ -119,6 +130,7 @@ void check_exportable(const Scene& scene) {
 int analyze(const StageArguments& a) {
   limit_threads(a.run.threads);
   std::vector<Store> stores = open_all(a.inputs);
+  check_same_rules(stores, a.inputs);
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   Options options = stores.front().options();
@@ -136,6 +148,7 @@ int mesh(const StageArguments& a) {
   const Log log = a.run.log();
   Scene problems;
   for (Store& store : open_all(a.inputs)) {
+    store.check_rules();
     const Options options = store.options();
     store.get_coanalysis(problems);
     const std::vector<std::string> names = store.names();
@@ -218,7 +231,10 @@ Run add_segment(CLI::App& app) {
   add_folder_options(app, a->read);
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
-  return [a] { return segment(*a); };
+  return [a] {
+    switch_off_dependents(a->options, a->run.log());
+    return segment(*a);
+  };
 }
 
 Run add_analyze(CLI::App& app) {

@@ -23,13 +23,15 @@
 #include "core/parallel.h"
 #include "k_means.h"
 #include "kinds.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
+using namespace parameters::coanalysis;
+
 constexpr double kSameEigenvalue = 1e-9;
 constexpr int kVoters = 5;  // of a prior
-constexpr int kKindsALayer = 4;
 const char* const kNotConverged = "layers: the eigenvectors did not converge";
 
 // 0..k−1, coarse to fine.
@@ -146,8 +148,8 @@ Clustering cluster_segments(const std::vector<Descriptor>& segments,
 
   std::vector<int> classes;
   if (options.layering == Layering::kSpectral && k > 1)
-    classes = options.is_paper ? paper_classes(segments, k, options, result)
-                               : robust_classes(segments, k, options, result);
+    classes = options.rules.has(Rule::kKinds) ? robust_classes(segments, k, options, result)
+                                              : paper_classes(segments, k, options, result);
   if (!classes.empty()) {
     for (std::size_t s = 0; s < segments.size(); ++s) result.layer[s] = 1 + classes[s];
     return result;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/rules.h"
 #include "planes/planes.h"
 #include "segments/segments.h"
 #include "similarity.h"
@@ -17,7 +18,8 @@ enum class Layering {
 };  ///< size: one threshold per layer on the longest extent, the baseline to beat
 
 struct ClusteringOptions {
-  bool is_paper = false;  ///< clusters of the spectrum are layers, ordered by mean volume
+  RuleSet rules = RuleSet::all();  ///< without Rule::kKinds clusters of the spectrum are layers,
+                                   ///< by falling mean volume
   Layering layering = Layering::kSpectral;
   int layers = 3;  ///< l_n
   double eta = 4.0;
@@ -53,16 +55,16 @@ Clustering classify_segments(const std::vector<Descriptor>& segments, const Prio
                              const ClusteringOptions& options = {});
 
 struct LayerPlanesOptions {
-  bool is_paper = true;  ///< robust: small planes wait for the finest layer
-  int layers = 3;        ///< l_n: the finest layer is l_n − 1
+  RuleSet rules = RuleSet::none();  ///< Rule::kSmallPlanes: they wait for the finest layer
+  int layers = 3;                   ///< l_n: the finest layer is l_n − 1
 };
 
 /// The planes of layer k of one building: those of segments on layers ≤ k, and planes of no segment
-/// that touch one of those (outlines nearer than 0.3 m or twice the planes' distance). Robust, and
-/// k not the finest: without the smallest planes of the segments on layer 0, as many as have 3 % of
-/// those segments' area, and without planes of no segment that are no larger than the largest of
-/// them. `layer_of_segment` per segment of the building. Rising plane indices; those of k are among
-/// those of k + 1.
+/// that touch one of those (outlines nearer than 0.3 m or twice the planes' distance). With
+/// Rule::kSmallPlanes, and k not the finest: without the smallest planes of the segments on layer
+/// 0, as many as have 3 % of those segments' area, and without planes of no segment that are no
+/// larger than the largest of them. `layer_of_segment` per segment of the building. Rising plane
+/// indices; those of k are among those of k + 1.
 std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
                               const std::vector<int>& layer_of_segment, int k,
                               const LayerPlanesOptions& options = {});

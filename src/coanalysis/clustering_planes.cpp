@@ -14,15 +14,14 @@
 #include <cmath>
 
 #include "clustering.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kLeastTouch = 0.3;    // metres
-constexpr double kSmallPlanes = 0.03;  // of the area of layer 0's segments, together …
-constexpr double kSmallPlane = 0.01;   // … and each of them
-constexpr double kSpareShare = 0.005;  // of all planes' area: smaller ones never join layer 0 …
-constexpr double kSparesShare = 0.01;  // … nor do planes that have less together
+using namespace parameters::coanalysis;
+
+constexpr double kLeastTouch = 0.3;  // metres
 
 struct Piece {
   Vec3 a, b, c;
@@ -153,7 +152,7 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
                               const LayerPlanesOptions& options) {
   assert(layer_of_segment.size() == segments.segments.size());
   const std::size_t n = planes.planes.size();
-  const bool is_coarse = !options.is_paper && k < options.layers - 1;
+  const bool is_coarse = options.rules.has(Rule::kSmallPlanes) && k < options.layers - 1;
   const double small = is_coarse ? small_area(planes, segments, layer_of_segment) : -1;
   std::vector<char> is_in(n, 0), is_out(n, 0);  // out: whatever it touches
   for (std::size_t p = 0; p < n; ++p) is_out[p] = sane_area(planes.planes[p]) <= small;

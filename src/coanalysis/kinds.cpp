@@ -17,11 +17,13 @@
 #include "clustering_spectrum.h"
 #include "core/flat.h"
 #include "k_means.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSameKind = 0.1;      // distance; samples of the same shape differ by up to 0.07
+using namespace parameters::coanalysis;
+
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
 /// Segments that must be of one kind: the group of each, numbered by first members.

@@ -30,6 +30,7 @@
 #include <map>
 
 #include "core/parallel.h"
+#include "parameters.h"
 #include "selection_model.h"
 
 namespace colod {
@@ -37,6 +38,8 @@ namespace colod {
 using namespace selection;
 
 namespace {
+
+using namespace parameters::coanalysis;
 
 constexpr double kOptimalGap = 1e-7;  // of the objective: less is rounding
 constexpr int kMaxSteps = 400;        // of the bound
@@ -196,7 +199,7 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
                   100 * result.gap);
     result.warnings.push_back(text);
   }
-  if (!options.is_paper) keep_kinds_whole(buildings, model, solved.x, result);
+  if (options.rules.has(Rule::kWholeKinds)) keep_kinds_whole(buildings, model, solved.x, result);
   result.seconds = since(start);
   return result;
 }

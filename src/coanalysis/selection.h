@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/rules.h"
+#include "parameters.h"
 #include "segments/segments.h"
 #include "similarity.h"
 
@@ -18,7 +20,7 @@ struct SelectionBuilding {
 };
 
 struct SelectionOptions {
-  bool is_paper = false;  ///< f_co summed and f_r > 0.8, to the letter; robust: see selection.cpp
+  RuleSet rules = RuleSet::all();  ///< none: f_co summed and f_r > 0.8, to the letter
   double beta = 0.3, lambda = 0.4, eta = 4.0;
   int starts = 8;  ///< of the block ascent
   std::uint64_t seed = 1;

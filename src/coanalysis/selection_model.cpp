@@ -16,11 +16,13 @@
 #include <map>
 
 #include "core/parallel.h"
+#include "parameters.h"
 
 namespace colod::selection {
 namespace {
 
-constexpr double kPaperBound = 0.8, kRobustBound = 0.95;  // on f_r
+using namespace parameters::coanalysis;
+
 constexpr double kStrict = 1e-9;
 
 double sane(double x) { return std::isfinite(x) && x > 0 ? x : 0; }
@@ -60,7 +62,7 @@ std::vector<double> lone_losses(const SelectionBuilding& building,
 void add_building(const SelectionBuilding& building, int number, const SelectionOptions& options,
                   double similarity_weight, Model& model) {
   const int n = static_cast<int>(building.segments.size());
-  const double bound = options.is_paper ? kPaperBound : kRobustBound;
+  const double bound = options.rules.has(Rule::kStrictBound) ? kRobustBound : kPaperBound;
   Block block;
   block.first = model.size();
   block.capacity = (1 - bound) * (1 - kStrict);
@@ -76,7 +78,7 @@ void add_building(const SelectionBuilding& building, int number, const Selection
     if (lone[s] > block.capacity) continue;
     const double share = area > 0 ? sane(building.segments[s].area) / area : 0;
     item_of[s] = model.size();
-    const double weight = similarity_weight * (options.is_paper ? 1 : share);
+    const double weight = similarity_weight * (options.rules.has(Rule::kAreaShares) ? share : 1);
     model.items.push_back({static_cast<int>(model.blocks.size()), number, s, options.beta * share,
                            weight, weight, model.size()});
   }
@@ -151,7 +153,8 @@ Model add_buildings(const std::vector<SelectionBuilding>& buildings,
                                                       options.prior->buildings.end(), has_segments)
                                       : counted;
   const auto others = static_cast<double>(std::max<std::ptrdiff_t>(1, in_prior));
-  const double weight = options.is_paper ? options.lambda : options.lambda / others;
+  const double weight =
+      options.rules.has(Rule::kAreaShares) ? options.lambda / others : options.lambda;
   for (std::size_t i = 0; i < buildings.size(); ++i)
     if (!buildings[i].segments.empty())
       add_building(buildings[i], static_cast<int>(i), options, weight, model);

@@ -24,13 +24,14 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kRange = 6;            // whitened units
-constexpr double kThin = 0.05;          // metres: thinner is flat, and the whitening's floor
-constexpr double kThinRelative = 0.02;  // of the longest axis
+using namespace parameters::coanalysis;
+
+constexpr double kRange = 6;  // whitened units
 
 struct Triangle {
   Vec3 a, ab, ac;

@@ -60,10 +60,10 @@ Visibility visibility_of(const std::string& name) {
   return name == "sweep" ? Visibility::kSweep : Visibility::kEmbree;
 }
 
-Options default_options(Rules rules) {
+Options default_options(const RuleSet& rules) {
   Options options;
   options.rules = rules;
-  if (rules == Rules::kPaper) options.ns = 150;
+  if (rules.is_none()) options.ns = 150;
   return options;
 }
 

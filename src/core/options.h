@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace colod {
+#include "rules.h"
 
-enum class Rules { kRobust, kPaper };  ///< docs/rules.md says what each changes
+namespace colod {
 
 /// What finds the first plane along each ray (docs/performance.md): Embree in packets of rays, one
 /// ray at a time (to measure against), or the sweep over the slices' outlines.
@@ -21,7 +21,7 @@ const char* name_of(Visibility visibility);
 Visibility visibility_of(const std::string& name);
 
 struct Options {
-  Rules rules = Rules::kRobust;
+  RuleSet rules = RuleSet::all();  ///< docs/rules.md says what each changes
   Visibility visibility = Visibility::kEmbree;
   int layers = 3;           ///< l_n, 1..8
   int ns = 100;             ///< n_s: voxels along each side of the box, 8..1000; the paper has 150
@@ -54,9 +54,9 @@ struct OptionInfo {
 /// The numeric options, in the order in which they are documented.
 const std::vector<OptionInfo>& option_table();
 
-/// What holds when only the rules are chosen: the paper's n_s is 150, robust finds the same objects
-/// with 100 in a third of the time (docs/rules.md).
-Options default_options(Rules rules);
+/// What holds when only the rules are chosen: without any, the paper's n_s of 150; with them the
+/// same objects are found with 100 in a third of the time (docs/log/rules-measured.md).
+Options default_options(const RuleSet& rules);
 
 /// Throws Error{kUsage} naming the option when a value is NaN or out of its range.
 void validate(const Options& options);

@@ -6,6 +6,7 @@
 //   thickness above the underside.
 // Notation: U floor of a balcony, W its walls, d one of four horizontal directions.
 #include "balconies.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +15,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kThickness = 0.12;  // metres of a wall whose other side is not seen
-constexpr double kThickest = 0.35;   // metres between both sides of a thin wall
-constexpr double kSlab = 0.18;       // metres of a floor of which only one side is seen
-constexpr double kMostBeyond =
-    1.5;  // metres of a balcony beyond the part of its floor that is seen
-constexpr double kLeastFloor = 0.5, kLeastUnderside = 1;  // m²
-constexpr double kBelow = 1.0;  // metres below a floor: where nothing or a room is
-constexpr double kAbove = 0.3;  // metres above the walls: where a closed box has its lid
-constexpr double kLeastRail = 0.4, kMostRail = 1.6;  // metres of a balcony's wall above its floor
-constexpr double kLeastRailAlone = 0.7;  // of one whose floor is not seen: lower boxes are ledges
+using namespace parameters::elements::balconies;
 
 /// A level plane near that height over at least half of the rectangle.
 bool has_level(const std::vector<Panel>& panels, bool is_ceiling, const Range& z, const Vec3& a,

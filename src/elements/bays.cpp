@@ -5,6 +5,7 @@
 //   facade at their feet tell it.
 // Notation: –
 #include "bays.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kAway = -0.4;  // cosine of its sides' normals at most: a splayed bay's cross
-constexpr double kLeastDepth = 0.35, kMostDepth = 1.8;  // metres
-constexpr double kLeastWidth = 1, kMostWidthOfBay = 5;
-constexpr double kLeastHeight = 1.8;
-constexpr double kMostFront = 25;  // m²
+using namespace parameters::elements::bays;
 
 /// The sides, and the direction that the bay looks to.
 struct Sides {

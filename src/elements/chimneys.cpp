@@ -2,6 +2,7 @@
 // Differs: –
 // Notation: –
 #include "chimneys.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kLeastChimney = 0.25;  // metres between a chimney's walls
-constexpr double kMostCorner = 1.3;     // metres of a chimney of which only a corner is seen
+using namespace parameters::elements::chimneys;
 
 /// Two walls that look away from each other, and what else of a chimney is seen.
 struct Pair {

@@ -5,6 +5,7 @@
 //   are small and often not seen, and are added.
 // Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
 #include "dormers.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kLeastRoof = 0.7, kMostRoof = 8;  // m² of T
-constexpr double kLeastHost = 4;                   // times T's area: R's
-constexpr double kCrossing = 0.966;                // cosine (15°) of T and R at most
-constexpr double kLeastRelief = 0.35;              // metres
-constexpr double kSteep = 0.55;                    // upward part of the normal: 57°
-constexpr double kMostWall = 6;                    // m² of a dormer's wall
+using namespace parameters::elements::dormers;
 
 /// Distances of a panel's outline from a plane.
 Range relief(const Panel& panel, const Plane& host) {

@@ -23,17 +23,21 @@ namespace {
 using elements::Panel;
 
 struct Detector {
+  Rule rule;
   std::vector<Element> (*find)(const std::vector<Panel>&);
   bool is_for_unknown;  ///< what it finds counts only where it is no part of what is known
 };
 
 /// In the order in which elements are found, returned and told to other rooms: of two that share
 /// planes the earlier one takes them. What is seen from both sides goes before what one side shows.
-constexpr Detector kDetectors[] = {
-    {elements::find_balconies, false},      {elements::find_balconies_from_below, true},
-    {elements::find_loggias, false},        {elements::find_chimneys, true},
-    {elements::find_chimney_corners, true}, {elements::find_bays, true},
-    {elements::find_dormers, false},        {elements::find_windows, false}};
+constexpr Detector kDetectors[] = {{Rule::kBalconies, elements::find_balconies, false},
+                                   {Rule::kBalconies, elements::find_balconies_from_below, true},
+                                   {Rule::kLoggias, elements::find_loggias, false},
+                                   {Rule::kChimneys, elements::find_chimneys, true},
+                                   {Rule::kChimneys, elements::find_chimney_corners, true},
+                                   {Rule::kBays, elements::find_bays, true},
+                                   {Rule::kDormers, elements::find_dormers, false},
+                                   {Rule::kWindows, elements::find_windows, false}};
 
 /// A plane of it is one of a known element's, or lies in a known element of the same kind.
 bool is_known(const Planes& planes, const std::vector<Element>& known, const Element& part) {
@@ -63,12 +67,15 @@ bool contains(const Region& region, const Vec3& x) {
                      [&](const HalfSpace& h) { return h.normal.dot(x) <= h.offset; });
 }
 
-std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among) {
+std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among,
+                                   const RuleSet& rules) {
   const std::vector<Panel> panels = elements::panels_of(planes, among);
   std::vector<Element> found;
-  for (const Detector& detector : kDetectors)
+  for (const Detector& detector : kDetectors) {
+    if (!rules.has(detector.rule)) continue;
     for (Element& e : detector.find(panels))
       if (!detector.is_for_unknown || !is_known(planes, found, e)) found.push_back(std::move(e));
+  }
   for (Element& e : found) put_in_order(e);
   return found;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/element_kind.h"
+#include "core/rules.h"
 #include "planes/planes.h"
 
 namespace colod {
@@ -43,7 +44,8 @@ struct Element {
 
 /// Those that the planes `among` (indices, rising) form; a plane may be part of several. Balconies
 /// first, then loggias, chimneys, bays, dormers and recesses, by lowest planes. Cheap: pairs of
-/// small planes that are near.
-std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among);
+/// small planes that are near. Of the rules each kind's own is asked.
+std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among,
+                                   const RuleSet& rules = RuleSet::all());
 
 }  // namespace colod

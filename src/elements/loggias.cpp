@@ -2,6 +2,7 @@
 // Differs: –
 // Notation: –
 #include "loggias.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kLeastDepth = 0.5, kMostDepth = 4;  // metres of a loggia
-constexpr double kLeastWidth = 0.8;
-constexpr double kAbove = 0.5;  // metres above a loggia: where a room must be
+using namespace parameters::elements::loggias;
 
 /// Between two walls that face each other.
 struct Gap {

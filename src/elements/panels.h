@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "elements.h"
+#include "parameters.h"
 
 namespace colod::elements {
 
-constexpr double kUpright = 0.35;     // |cosine| to the vertical of a wall's normal
-constexpr double kLevel = 0.95;       // of a floor's or a ceiling's
-constexpr double kAlike = 0.9;        // cosine of directions that count as the same
-constexpr double kMostArea = 25;      // m² of a plane of such a part
-constexpr double kReach = 0.35;       // metres between planes that meet
-constexpr double kMostCheek = 12;     // m² of a wall beside a loggia, a chimney or a bay
-constexpr double kMostWidth = 15;     // metres of a loggia
-constexpr double kMostChimney = 2.5;  // metres between a chimney's walls
-constexpr double kTouch = 0.2;        // metres between walls that share an edge
+using namespace parameters::elements::panels;
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -6,6 +6,7 @@
 //   is added.
 // Notation: –
 #include "windows.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,7 @@
 namespace colod::elements {
 namespace {
 
-constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
-constexpr double kBeside = 0.12;  // metres: a reveal begins at the pane's edge
-constexpr double kAcross = 0.35;  // |cosine| of its normal to the pane's
-constexpr double kFacing = 0.7;   // cosine between a reveal's normal and the way inward
-constexpr double kLeastPane = 0.3, kMostPane = 16;  // m²: more is the back of a loggia
-constexpr std::size_t kReveals = 2;                 // at least
+using namespace parameters::elements::windows;
 
 /// A wall with the ranges that it takes.
 struct Pane {

@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "parameters.h"
 #include "partition/partition.h"
 
 namespace colod {
 
-constexpr double kSubstantial = 0.05;  ///< of the largest component: one that is kept besides it
-constexpr double kNoOther = 2;         ///< likewise: none is
+using namespace parameters::extraction::components;
 
 /// Keeps the largest face-connected set of inside cells by volume, and besides those of at least
 /// `least_share` of its volume that stand in the lower third of its height (> 1: no others); false:

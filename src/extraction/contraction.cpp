@@ -12,16 +12,17 @@
 #include <tuple>
 
 #include "core/intersections.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
+using namespace parameters::extraction::contraction;
+
 using Edge = std::tuple<double, int, int>;
 
-constexpr int kPasses = 5;       // what one contraction forbids another may allow
-constexpr double kLongest = 16;  // times the width: an edge of a narrow facet that may go
+constexpr int kPasses = 5;  // what one contraction forbids another may allow
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kPlanar = 0.998;  // cosine between a triangle and its facet
 
 /// No triangle may turn by more than 60 degrees from its facet; `cross`: product of its sides.
 bool keeps_direction(const Vec3& normal, const Vec3& cross) {

@@ -5,17 +5,19 @@
 
 #include <algorithm>
 
+#include "parameters.h"
+
 namespace colod {
 namespace {
 
-constexpr double kClipShare = 1.0 / 3;  // of the growing distance: what a cut must reach into
+using namespace parameters::extraction::cut;
 
 }  // namespace
 
 Partition cut_space(const CuttingPlan& plan, const Planes& planes,
                     const ExtractionOptions& options) {
   PartitionOptions cutting{.max_cells = options.max_cells};
-  if (!options.is_paper)
+  if (options.rules.has(Rule::kFineCuts))
     cutting.clip_tolerance = std::min(cutting.clip_tolerance, kClipShare * planes.distance);
   return partition_space(plan.planes, plan.box, cutting);
 }

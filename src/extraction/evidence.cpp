@@ -13,15 +13,12 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr std::array<double, 3> kElevations = {0, 20, 40};
-constexpr std::array<double, 2> kSteep = {80, 88};
-constexpr double kRoofVote = 0.7;  // of a ray that meets nothing, where a roof stands above
-constexpr double kThinCell = 0.1;  // metres: thinner cells follow their neighbours
-constexpr double kSmallCell = 0.2, kLargeCell = 20;  // m³: one sample below, nine above
+using namespace parameters::extraction::evidence;
 
 /// Vertices of each cell, rising.
 std::vector<std::vector<int>> cell_vertices(const Partition& partition) {
@@ -74,16 +71,16 @@ class Voter {
  public:
   Voter(const Sight& sight, const VoteOptions& options)
       : sight_(sight),
-        is_paper_(options.is_paper),
-        around_(options.is_paper ? sphere_directions(options.nr)
-                                 : ring_directions(options.nr, kElevations)),
+        is_on_rings_(options.is_on_rings),
+        around_(options.is_on_rings ? ring_directions(options.nr, kElevations)
+                                    : sphere_directions(options.nr)),
         steep_(ring_directions(std::max(8, options.nr / 5), kSteep)) {}
 
   Vote vote(const Vec3& point) const {
     const auto known = sight_.votes.find(point);
     if (known != sight_.votes.end()) return known->second;
     const Tally around = cast(sight_.rays, point, around_);
-    if (is_paper_) return {2 * around.inside - 1, 0, 0};
+    if (!is_on_rings_) return {2 * around.inside - 1, 0, 0};
     const Tally above = cast(sight_.rays, point, steep_);
     const double roof = std::clamp(above.inside - above.outside, 0.0, 1.0);
     const double escaped = 1 - around.inside - around.outside;
@@ -92,7 +89,7 @@ class Voter {
 
  private:
   const Sight& sight_;
-  bool is_paper_;
+  bool is_on_rings_;
   std::vector<Vec3> around_, steep_;
 };
 
@@ -104,8 +101,8 @@ std::vector<Vote> vote_on_cells(const Partition& partition, Sight& sight,
   std::vector<std::vector<std::pair<Vec3, Vote>>> seen(partition.cells.size());
   const auto ask = [&](std::size_t cell) {
     const std::vector<Vec3> points =
-        options.is_paper ? std::vector<Vec3>{partition.cells[cell].centroid}
-                         : sample_cell(partition, static_cast<int>(cell), vertices[cell]);
+        options.is_on_rings ? sample_cell(partition, static_cast<int>(cell), vertices[cell])
+                            : std::vector<Vec3>{partition.cells[cell].centroid};
     for (const Vec3& p : points) seen[cell].emplace_back(p, voter.vote(p));
   };
   parallel_for(seen.size(), ask, 16);

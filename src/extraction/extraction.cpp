@@ -40,7 +40,7 @@ Draft make_draft(const CuttingPlan& plan, const Planes& planes, Sight& sight,
   sight.count(static_cast<std::int64_t>(draft.partition.cells.size()));
   draft.labels = label_cells(draft.partition, plan, planes, sight, options);
   if (!draft.labels.is_inside.empty())
-    draft.shell = make_surface(draft.partition, draft.labels.is_inside, options.is_paper);
+    draft.shell = make_surface(draft.partition, draft.labels.is_inside, options.rules);
   draft.warnings = draft.partition.warnings;
   draft.warnings.insert(draft.warnings.end(), draft.labels.warnings.begin(),
                         draft.labels.warnings.end());
@@ -53,7 +53,7 @@ Extraction finish(Draft draft, const Sight& sight, const ExtractionOptions& opti
   result.cells = static_cast<std::int64_t>(draft.partition.cells.size());
   result.warnings = std::move(draft.warnings);
   result.is_manifold = is_closed_manifold(result.mesh.triangles);
-  if (is_spent(sight) && !options.is_paper)
+  if (is_spent(sight) && !options.rules.is_none())
     result.warnings.push_back(
         "its planes make too many cells (" + std::to_string(sight.cells) +
         " in all attempts so far) to look for a leaner surface: small facets "
@@ -81,16 +81,17 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
   Draft draft = make_draft(plan, planes, sight, options);
   if (draft.labels.is_inside.empty())
     throw Error(Stage::kProcess, "extraction", "no cell is seen from inside by most rays");
-  for (int round = 0; round < kPruningRounds && !options.is_paper && !is_spent(sight); ++round) {
+  const int rounds = options.rules.has(Rule::kPruning) ? kPruningRounds : 0;
+  for (int round = 0; round < rounds && !is_spent(sight); ++round) {
     std::optional<Pruning> pruning = prune(plan, draft, planes);
     if (!pruning) break;
     Draft next = make_draft(pruning->plan, planes, sight, options);
     if (!keeps_surface(draft, next, *pruning)) break;
     draft = std::move(next), plan = std::move(pruning->plan);
   }
-  if (options.tolerance > 0 && !is_spent(sight))
+  if (options.rules.has(Rule::kFacetPrice) && options.tolerance > 0 && !is_spent(sight))
     draft = simplify(std::move(draft), planes, options);
-  if (options.is_finest && !options.is_paper && planes.is_clean())
+  if (options.is_finest && options.rules.has(Rule::kSheets) && planes.is_clean())
     draft = thicken(std::move(draft), std::move(plan), planes, layer_planes, sight.rays, options);
   return finish(std::move(draft), sight, options);
 }

@@ -10,15 +10,13 @@
 #include "components.h"
 #include "coverage.h"
 #include "min_cut.h"
+#include "parameters.h"
 #include "told.h"
 
 namespace colod {
 namespace {
 
-constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};
-constexpr double kEnough = 0.6;      // share of the outlines on the surface that ends the search
-constexpr double kWorthwhile = 0.1;  // share that another trial must add
-constexpr double kLittle = 0.2;      // share of the outlines below which a warning is due
+using namespace parameters::extraction::label;
 
 std::vector<char> forced_outside(const Partition& partition, const CuttingPlan& plan) {
   std::vector<char> is_forced(partition.cells.size(), 0);
@@ -39,14 +37,14 @@ std::vector<char> threshold_cells(const Evidence& evidence,
 
 /// The best of several min-cuts; empty: none finds an inside.
 std::vector<char> best_cut(const Partition& partition, const Evidence& evidence,
-                           const std::vector<char>& is_forced, double smoothness,
+                           const std::vector<char>& is_forced, double smoothness, double others,
                            std::vector<std::string>& warnings) {
   std::vector<char> is_inside;
   double best = -1;
   for (const double escape : kEscapes) {
     std::vector<char> trial =
         cut_cells(partition, evidence, is_forced, {.smoothness = smoothness, .escape = escape});
-    if (!keep_largest_components(partition, trial, kSubstantial)) continue;
+    if (!keep_largest_components(partition, trial, others)) continue;
     const double share = explained_share(partition, evidence, trial);
     if (share > best + kWorthwhile) best = share, is_inside = std::move(trial);
     if (best > kEnough) break;
@@ -56,11 +54,11 @@ std::vector<char> best_cut(const Partition& partition, const Evidence& evidence,
 }
 
 /// All of the box; empty: nothing of it is left.
-std::vector<char> whole_box(const Partition& partition, const std::vector<char>& is_forced) {
+std::vector<char> whole_box(const Partition& partition, const std::vector<char>& is_forced,
+                            double others) {
   std::vector<char> is_inside(partition.cells.size());
   for (std::size_t c = 0; c < is_inside.size(); ++c) is_inside[c] = !is_forced[c];
-  return keep_largest_components(partition, is_inside, kSubstantial) ? is_inside
-                                                                     : std::vector<char>();
+  return keep_largest_components(partition, is_inside, others) ? is_inside : std::vector<char>();
 }
 
 }  // namespace
@@ -69,21 +67,22 @@ Labels label_cells(const Partition& partition, const CuttingPlan& plan, const Pl
                    Sight& sight, const ExtractionOptions& options) {
   Labels labels;
   labels.is_forced_out = forced_outside(partition, plan);
-  if (options.is_paper) {
-    labels.is_inside =
-        threshold_cells(gather_evidence(partition, sight, {.is_paper = true, .nr = options.nr}),
-                        labels.is_forced_out);
-    if (!keep_largest_components(partition, labels.is_inside, kNoOther)) labels.is_inside.clear();
-    return labels;
-  }
-  labels.evidence = gather_evidence(partition, sight, {.nr = options.nr});
-  measure_coverage(partition, planes, plan.input, labels.evidence);
+  const RuleSet& rules = options.rules;
+  const double others = rules.has(Rule::kComponents) ? kSubstantial : kNoOther;
+  labels.evidence =
+      gather_evidence(partition, sight, {.is_on_rings = rules.has(Rule::kRings), .nr = options.nr});
+  if (!rules.is_none()) measure_coverage(partition, planes, plan.input, labels.evidence);
   tell_cells(partition, plan.elements, labels.evidence);
-  labels.is_inside = best_cut(partition, labels.evidence, labels.is_forced_out, options.smoothness,
-                              labels.warnings);
-  if (!labels.is_inside.empty()) return labels;
+  if (rules.has(Rule::kMinCut)) {
+    labels.is_inside = best_cut(partition, labels.evidence, labels.is_forced_out,
+                                options.smoothness, others, labels.warnings);
+  } else {
+    labels.is_inside = threshold_cells(labels.evidence, labels.is_forced_out);
+    if (!keep_largest_components(partition, labels.is_inside, others)) labels.is_inside.clear();
+  }
+  if (!labels.is_inside.empty() || !rules.has(Rule::kBoxFallback)) return labels;
   labels.warnings.push_back("no ray sees an inside: the layer is the box around its planes");
-  labels.is_inside = whole_box(partition, labels.is_forced_out);
+  labels.is_inside = whole_box(partition, labels.is_forced_out, others);
   return labels;
 }
 

@@ -11,10 +11,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "parameters.h"
+
 namespace colod {
 namespace {
 
-constexpr double kAlike_deg = 25;  // between the normals of a plane and its leader
+using namespace parameters::extraction::leaders;
 
 /// The largest distance of the outline from the plane, or `enough` where that is exceeded.
 double reach_of(const Outline& outline, const Plane& plane, double enough) {

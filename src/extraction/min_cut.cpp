@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "parameters.h"
+
 // GCC takes an optional of Boost's for uninitialised at -O3.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -20,8 +22,7 @@
 namespace colod {
 namespace {
 
-constexpr double kLocalVote = 0.25;  // of an outline for the cells it separates, per m²
-constexpr double kDiscount = 0.9;    // of smoothness on a fully covered facet
+using namespace parameters::extraction::min_cut;
 
 using Capacity = std::int64_t;
 using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;

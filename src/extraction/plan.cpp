@@ -17,18 +17,13 @@
 #include "core/error.h"
 #include "core/flat.h"
 #include "leaders.h"
+#include "parameters.h"
 #include "walls.h"
 
 namespace colod {
 namespace {
 
-constexpr double kBoxGrowth = 0.05;  // of the diagonal
-constexpr double kSnap = 0.05;       // metres: a side nearer than this to a plane takes its place
-constexpr double kWholeSide = 0.2;   // of the side's area: a plane that may draw it in by more
-constexpr double kSnapCosine = 0.9998;  // 1.1 degrees
-constexpr double kRidge = 0.5;          // metres that a ridge may rise above the outlines at it
-constexpr double kSteepest = 0.1, kFlattest = 0.995;  // cosines of a pitched roof's slope
-constexpr double kThinnest = 0.5;  // metres: a layer flatter than this is extruded inward
+using namespace parameters::extraction::plan;
 
 void add_cut(CutPlane cut, int input, CuttingPlan& plan) {
   plan.planes.push_back(std::move(cut));
@@ -101,9 +96,10 @@ void add_sides(const Planes& planes, const std::vector<int>& layer_planes, const
 }
 
 /// The layer's elements.
-std::vector<Element> elements_of(const Planes& planes, std::vector<int> layer_planes) {
+std::vector<Element> elements_of(const Planes& planes, std::vector<int> layer_planes,
+                                 const RuleSet& rules) {
   std::sort(layer_planes.begin(), layer_planes.end());
-  return find_elements(planes, layer_planes);
+  return find_elements(planes, layer_planes, rules);
 }
 
 /// Planes that end an element lead themselves.
@@ -126,7 +122,7 @@ Box box_around(const Planes& planes, const ExtractionOptions& options) {
   std::vector<int> every(planes.planes.size());
   std::iota(every.begin(), every.end(), 0);
   Box all = outline_box(planes, every);
-  if (!options.is_paper && !planes.box.is_empty())
+  if (options.rules.has(Rule::kExtractionFoot) && !planes.box.is_empty())
     all.min.z() = planes.box.min.z();  // walls of airborne clouds end above the ground
   return all;
 }
@@ -159,15 +155,16 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
   for (int axis = 0; axis < 3; ++axis)  // one flat region still needs a box
     if (all.size()[axis] < kThinnest / 10)
       plan.box.min[axis] -= kThinnest / 10, plan.box.max[axis] += kThinnest / 10;
-  if (!options.is_paper) {
+  if (options.rules.has(Rule::kSides)) {
     const Vec3 margin = Vec3::Constant(std::max(kThinnest, kBoxGrowth * all.diagonal()));
     plan.box.min -= margin, plan.box.max += margin;
     add_sides(planes, layer_planes, all, outline_box(planes, layer_planes), options.tolerance,
               plan);
   }
-  std::vector<int> leaders = find_leaders(planes, layer_planes, options.tolerance);
-  if (!options.is_paper) {
-    plan.elements = elements_of(planes, layer_planes);
+  std::vector<int> leaders =
+      find_leaders(planes, layer_planes, options.rules.has(Rule::kLeaders) ? options.tolerance : 0);
+  if (options.rules.has(Rule::kElementCuts)) {
+    plan.elements = elements_of(planes, layer_planes, options.rules);
     keep_bounds(layer_planes, plan.elements, leaders);
   }
   for (std::size_t i = 0; i < layer_planes.size(); ++i) {
@@ -179,7 +176,7 @@ CuttingPlan plan_cuts(const Planes& planes, const std::vector<int>& given, const
             p, plan);
   }
   for (const Element& element : plan.elements) add_rims(element, plan);
-  if (!options.is_paper)
+  if (options.rules.has(Rule::kWalls))
     for (const CutPlane& wall :
          walls_under_borders(planes, layer_planes, rays, plan.box, plan.limits))
       add_cut(wall, -1, plan);

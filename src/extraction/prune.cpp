@@ -7,13 +7,12 @@
 #include <algorithm>
 
 #include "contraction.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSliver = 0.05;        // metres: facets narrower than this carry no plane
-constexpr double kLeastCovered = 0.15;  // of a plane's facets that must lie under its outline
-constexpr double kMostLost = 0.03;      // of the worthwhile planes' surface
+using namespace parameters::extraction::prune;
 
 /// m² of the surface per input plane that lies under the plane's own outline.
 std::vector<double> explained_areas(const Draft& draft, std::size_t planes) {

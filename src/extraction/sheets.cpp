@@ -15,26 +15,14 @@
 #include "core/flat.h"
 #include "core/parallel.h"
 #include "core/spread.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kThickness = 0.08;   // metres of a slab
-constexpr double kLeastFar = 0.05;    // metres from the surface: nearer is no sheet …
-constexpr double kFar = 2;            // … nor nearer than that times the layer's tolerance
-constexpr double kJoined = 0.1;       // metres, at least: a border nearer to something ends there
-constexpr double kLeastAcross = 0.5;  // cosine to a border's normal of that of a sheet that ends it
-constexpr double kLevel = 0.9;        // |z| of a normal: a step's …
-constexpr double kStep = 0.6;         // … metres above the foot: it stands on the ground
-constexpr double kLift = 0.02;        // metres off a sheet
-constexpr double kLeastArea = 0.5;    // m² of a sheet …
-constexpr double kLeastShare = 1e-3;  // … and of all planes' area
-constexpr double kLeastSeen = 0.3;    // of a sheet: on both sides
-constexpr double kSpacing = 0.12;     // metres between places that are looked at
+using namespace parameters::extraction::sheets;
+
 constexpr double kMostPlaces = 20000;  // on a plane
-constexpr double kBend = 0.06;         // metres that a border may leave its outline
-constexpr double kInset = 0.06;        // metres from a border: where it is looked at
-constexpr double kShortest = 0.15;     // metres of a border's part that is cut
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 

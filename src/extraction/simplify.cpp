@@ -14,15 +14,14 @@
 #include <utility>
 
 #include "boundary.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kLeastVote = 0.25;  // what a cell counts at least, however unsure its side is
+using namespace parameters::extraction::simplify;
+
 constexpr int kRounds = 4;
-constexpr double kFacetPrice = 0.002;  // of tolerance × surface: volume that a facet must shape
-constexpr double kMostPrice = 0.02;    // m³, likewise: on the finest layer of a clean model
-constexpr double kMostMoved = 4;       // times the tolerance: how far saving a facet may go
 
 void sort_unique(std::vector<int>& ids) {
   std::sort(ids.begin(), ids.end());
@@ -243,14 +242,15 @@ int simplify_cells(const Partition& partition, const Evidence& evidence,
 
 Draft simplify(Draft draft, const Planes& planes, const ExtractionOptions& options) {
   const double price = kFacetPrice * options.tolerance * surface_area(draft.shell.mesh.mesh());
-  const bool is_capped = options.is_finest && !options.is_paper && planes.is_clean();
+  const bool is_capped =
+      options.is_finest && options.rules.has(Rule::kPriceCap) && planes.is_clean();
   std::vector<char> is_inside = draft.labels.is_inside;
   simplify_cells(draft.partition, draft.labels.evidence, draft.labels.is_forced_out,
                  {.facet_volume = is_capped ? std::min(price, kMostPrice) : price,
                   .depth = kMostMoved * options.tolerance,
                   .is_fixed = sides_of(draft.partition, planes)},
                  is_inside);
-  Shell shell = make_surface(draft.partition, is_inside);
+  Shell shell = make_surface(draft.partition, is_inside, options.rules);
   const bool is_leaner = !shell.mesh.facets.empty() &&
                          shell.mesh.facets.size() < draft.shell.mesh.facets.size() &&
                          keeps_volume(draft.shell.mesh, shell.mesh);

@@ -21,18 +21,15 @@
 #include "core/flat.h"
 #include "core/parallel.h"
 #include "core/spread.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-// Of mean distance, what a facet must save, and one of a body of its own: to which layer that
-// belongs was found among its like. A box on a face adds five facets.
-constexpr double kFacetWorth = 2.5e-4, kBodyWorth = 8e-4;
-constexpr std::size_t kBodyPlanes = 4;  // so many planes are a body …
-constexpr int kBodyFacets = 5;          // … or so many facets more
-constexpr double kMissed = 3e-4;        // mean distance that spares must make up to be tried
-constexpr int kSamples = 1000;          // of all outlines, and of a mesh
-constexpr std::size_t kGrain = 64;      // queries a task takes
+using namespace parameters::extraction::spares;
+
+constexpr int kSamples = 1000;      // of all outlines, and of a mesh
+constexpr std::size_t kGrain = 64;  // queries a task takes
 
 struct Samples {
   std::vector<Vec3> points;

@@ -10,15 +10,13 @@
 #include "boundary.h"
 #include "components.h"
 #include "contraction.h"
+#include "parameters.h"
 #include "polygons.h"
 
 namespace colod {
 namespace {
 
-constexpr double kShortest = 3e-3;       // metres: shorter edges are contracted …
-constexpr double kShortestPaper = 1e-3;  // … under the paper's rules
-constexpr double kNarrowest = 2.5e-3;    // metres: edges of narrower facets likewise
-constexpr double kMostLost = 0.03;       // of a body's volume
+using namespace parameters::extraction::surface;
 
 }  // namespace
 
@@ -27,16 +25,17 @@ bool keeps_volume(const PolygonMesh& before, const PolygonMesh& after) {
   return !(std::abs(signed_volume(after.mesh()) - volume) > kMostLost * volume);
 }
 
-Shell make_surface(const Partition& partition, std::vector<char> is_inside, bool is_paper) {
+Shell make_surface(const Partition& partition, std::vector<char> is_inside, const RuleSet& rules) {
   assert(is_inside.size() == partition.cells.size());
-  if (!is_paper) fill_cavities(partition, is_inside);
+  if (rules.has(Rule::kCavities)) fill_cavities(partition, is_inside);
   Shell shell{{}, mend_pinches(partition, is_inside)};
-  if (!keep_largest_components(partition, is_inside, is_paper ? kNoOther : kSubstantial))
+  if (!keep_largest_components(partition, is_inside,
+                               rules.has(Rule::kComponents) ? kSubstantial : kNoOther))
     return shell;
-  if (!is_paper) fill_cavities(partition, is_inside);
+  if (rules.has(Rule::kCavities)) fill_cavities(partition, is_inside);
   shell.mesh = build_polygons(partition, BoundaryFinder(partition).find(is_inside));
-  contract_short_edges(shell.mesh, is_paper ? kShortestPaper : kShortest);
-  if (!is_paper) contract_narrow_facets(shell.mesh, kNarrowest);
+  contract_short_edges(shell.mesh, rules.has(Rule::kShortEdges) ? kShortest : kShortestPaper);
+  if (rules.has(Rule::kNarrowFacets)) contract_narrow_facets(shell.mesh, kNarrowest);
   return shell;
 }
 

@@ -17,9 +17,10 @@ struct Shell {
 };
 
 /// The surface around the inside cells: pinches mended, short edges contracted; the largest
-/// component, and unless to the letter substantial others, with cavities filled. Empty when no cell
+/// component, and by rules substantial others, with cavities filled. Empty when no cell
 /// is inside.
-Shell make_surface(const Partition& partition, std::vector<char> is_inside, bool is_paper = false);
+Shell make_surface(const Partition& partition, std::vector<char> is_inside,
+                   const RuleSet& rules = RuleSet::all());
 
 /// A verb may cost the body no more than 3 % of its volume.
 bool keeps_volume(const PolygonMesh& before, const PolygonMesh& after);

@@ -22,7 +22,7 @@ Draft thicken(Draft draft, CuttingPlan plan, const Planes& planes,
   Partition partition = cut_space(plan, planes, options);
   if (partition.warnings.size() > draft.partition.warnings.size()) return draft;
   std::vector<char> is_inside = fill_slabs(scene, partition, sheets, first, draft.labels.is_inside);
-  Shell shell = make_surface(partition, is_inside);
+  Shell shell = make_surface(partition, is_inside, options.rules);
   if (!is_closed_manifold(shell.mesh.triangles) || !keeps_volume(draft.shell.mesh, shell.mesh))
     return draft;
   draft.partition = std::move(partition);

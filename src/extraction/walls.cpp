@@ -10,17 +10,13 @@
 #include <cmath>
 
 #include "core/flat.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSimplify = 0.4;    // metres: how far a border may leave its line
-constexpr double kShortest = 1.5;    // metres of border that ask for a wall
-constexpr double kBeside = 0.5;      // metres beyond the border, where a roof would go on
-constexpr double kStep = 0.7;        // metres of height that still count as the same roof
-constexpr double kSupport = 0.8;     // metres between a border and the wall that carries it
-constexpr double kTogether = 0.35;   // metres between borders that share a wall
-constexpr double kParallel = 0.985;  // cosine of 10 degrees
+using namespace parameters::extraction::walls;
+
 constexpr std::size_t kMost = 60;
 
 struct Border {

@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "losses.h"
+#include "parameters.h"
 #include "rounds.h"
 #include "scene/ground.h"
 #include "scene/hidden.h"
@@ -21,33 +22,27 @@
 namespace colod {
 namespace {
 
+using namespace parameters::layers;
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-constexpr double kTolerance = 0.01;        // of the diagonal, on layer 0; half on each finer one
-constexpr double kLeastTolerance = 0.001;  // of the diagonal, on the finest layer
 constexpr const char* kEmptyLayer =
     "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
-constexpr double kVolumeChange = 0.2;  // of the finer layer's volume
-constexpr int kSides = 8;  // of round shapes on layer 0; twice as many on each finer one
-
-bool is_paper(const Options& o) { return o.rules == Rules::kPaper; }
 
 void find_segments(Building& b, const Options& o) {
   {
     Stopwatch watch(b.timings.planes);
-    b.planes = detect_planes(b.source, {.is_paper = is_paper(o),
+    b.planes = detect_planes(b.source, {.rules = o.rules,
                                         .distance = o.distance,
                                         .angle_deg = o.angle_deg,
                                         .min_points = o.min_points});
   }
-  b.segments = build_segments(
-      b.planes,
-      {.is_paper = is_paper(o),
-       .alcove_area = o.alcove_area,
-       .visibility = {
-           .engine = o.visibility, .ns = o.ns, .nr = o.nr, .is_party_wall_rule = !is_paper(o)}});
+  b.segments =
+      build_segments(b.planes, {.rules = o.rules,
+                                .alcove_area = o.alcove_area,
+                                .visibility = {.engine = o.visibility, .ns = o.ns, .nr = o.nr}});
   b.timings.visibility = b.segments.visibility_seconds;
   b.timings.segments = b.segments.aggregation_seconds;
   Stopwatch watch(b.timings.similarity);
@@ -60,13 +55,13 @@ void add_layer_planes(const Building& b, int k, const Options& o, std::vector<in
   std::vector<char> is_taken(b.planes.planes.size(), 0);
   for (const int plane : order) is_taken[plane] = 1;
   for (const int plane : layer_planes(b.planes, b.segments, b.layer_of_segment, k,
-                                      {.is_paper = is_paper(o), .layers = o.layers}))
+                                      {.rules = o.rules, .layers = o.layers}))
     if (!is_taken[plane]) order.push_back(plane);
 }
 
 /// Metres: what is no detail on layer k. An exact model of few planes has none to give away.
 double tolerance(const Building& b, int k, const Options& o) {
-  if (is_paper(o)) return 0;
+  if (!o.rules.has(Rule::kTolerance)) return 0;
   const bool is_plain = b.planes.is_clean() && b.planes.planes.size() <= kFewPlanes;
   const double least = kLeastTolerance * b.planes.box.diagonal();
   if (is_plain) return std::min(least, b.planes.distance);
@@ -78,11 +73,11 @@ double tolerance(const Building& b, int k, const Options& o) {
 Extraction extract_planes(const Building& b, int k, const std::vector<RoundShape>& shapes,
                           const std::vector<int>& planes, std::vector<std::vector<int>> spares,
                           Sight& sight, const Options& o) {
-  const ExtractionOptions options{.is_paper = is_paper(o),
+  const ExtractionOptions options{.rules = o.rules,
                                   .nr = o.nr,
                                   .tolerance = tolerance(b, k, o),
                                   .is_finest = k + 1 == o.layers};
-  if (shapes.empty() || options.is_finest)
+  if (shapes.empty() || options.is_finest || !o.rules.has(Rule::kRoundLayers))
     return extract_layer(b.planes, planes, spares, sight, options);
   const ReducedLayer reduced =
       reduce_layer(b.planes, planes, shapes, 2 * M_PI / (kSides * std::pow(2, k)));
@@ -102,7 +97,7 @@ void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
   try {
     add_layer_planes(b, layer.layer, o, planes);
     std::vector<std::vector<int>> spares;
-    if (!is_paper(o) && layer.layer == 0 && o.layers > 1)
+    if (o.rules.has(Rule::kMissingPlanes) && layer.layer == 0 && o.layers > 1)
       spares = spare_planes(b.planes, b.segments, b.layer_of_segment, planes);
     Extraction result = extract_planes(b, layer.layer, shapes, planes, std::move(spares), sight, o);
     planes.insert(planes.end(), result.joined.begin(), result.joined.end());
@@ -129,14 +124,16 @@ StandIn misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volum
   return is_richer(coarse, fine) ? StandIn::kRicher : StandIn::kNone;
 }
 
-/// Detail rises along the chain, and (robust) all layers enclose about the same building.
+/// Detail rises along the chain, and (Rule::kVolume) all layers enclose about the same building.
 void keep_chain_sound(Building& b, const Options& o) {
+  const bool is_volume_checked = o.rules.has(Rule::kVolume);
   for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
     Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
     if (!coarse.failure.empty() || !fine.failure.empty()) continue;
-    coarse.stand_in = misfit(coarse.mesh, fine.mesh, !is_paper(o));
+    coarse.stand_in = misfit(coarse.mesh, fine.mesh, is_volume_checked);
     if (coarse.stand_in == StandIn::kNone && b.layers.back().failure.empty())
-      coarse.stand_in = misfit(coarse.mesh, b.layers.back().mesh, !is_paper(o));  // changes add up
+      coarse.stand_in =
+          misfit(coarse.mesh, b.layers.back().mesh, is_volume_checked);  // changes add up
     if (coarse.stand_in == StandIn::kNone) continue;
     if (coarse.stand_in == StandIn::kRicher)
       b.warnings.push_back("layer " + std::to_string(k) + " " + describe(coarse.stand_in));
@@ -268,7 +265,8 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
-    if (!is_paper(options)) b.source = remove_hidden(separate_ground(std::move(b.source)));
+    if (options.rules.has(Rule::kGround)) b.source = separate_ground(std::move(b.source));
+    if (options.rules.has(Rule::kHidden)) b.source = remove_hidden(std::move(b.source));
     find_segments(b, options);
     b.left_out = b.source.left_out;
     if (const std::vector<char> parted = floaters(b.planes); !parted.empty())
@@ -298,7 +296,7 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
   scene.has_prior = prior != nullptr;
   std::vector<SelectionBuilding> input;
   for (const Building& b : scene.buildings) input.push_back({b.descriptors, b.segments.coverage});
-  scene.selection = select_layer0(input, {.is_paper = is_paper(options),
+  scene.selection = select_layer0(input, {.rules = options.rules,
                                           .beta = options.beta,
                                           .lambda = options.lambda,
                                           .eta = options.eta,
@@ -315,7 +313,7 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
     for (std::size_t s = 0; s < scene.buildings[i].descriptors.size(); ++s)
       if (!scene.selection.is_layer0[i][s]) rest.push_back(scene.buildings[i].descriptors[s]);
   const ClusteringOptions clustering{
-      .is_paper = is_paper(options),
+      .rules = options.rules,
       .layering = options.is_size_layering ? Layering::kSize : Layering::kSpectral,
       .layers = options.layers,
       .eta = options.eta,
@@ -335,8 +333,9 @@ void mesh_building(Building& b, const Options& options) {
   if (!b.failure.empty()) return;
   try {
     Sight sight(b.planes);
-    const std::vector<RoundShape> shapes =
-        is_paper(options) ? std::vector<RoundShape>() : find_rounds(b.source);
+    const std::vector<RoundShape> shapes = options.rules.has(Rule::kRoundSides)
+                                               ? find_rounds(b.source, options.rules)
+                                               : std::vector<RoundShape>();
     mark_sides(shapes, b.planes);
     std::vector<int> planes;
     for (int k = 0; k < options.layers; ++k) {
@@ -352,7 +351,7 @@ void mesh_building(Building& b, const Options& options) {
     Stopwatch watch(b.timings.measure);
     const Surface surface = surface_of(b);
     weigh_finest(surface, b);
-    if (!is_paper(options)) b.failure = judge_building(surface, b);
+    if (options.rules.has(Rule::kScenePart)) b.failure = judge_building(surface, b);
     if (!b.failure.empty()) {
       b.layers.clear();
       forget_losses(b);

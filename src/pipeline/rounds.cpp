@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parameters.h"
 #include "rounds/reduce.h"
 
 namespace colod {
 namespace {
 
-constexpr double kCapCosine = 0.99999;  // between a cap's normal and the axis
-constexpr double kCapReach = 0.01;      // metres that a cap may be off its row's end
-constexpr double kLeastDrawn = 0.25;    // of a new side: less is what a house leaves of it
+using namespace parameters::layers;
 
 double area_of(const Outline& outline) {
   double sum = 0;

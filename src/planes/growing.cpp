@@ -11,10 +11,12 @@
 #include <queue>
 #include <tuple>
 
+#include "parameters.h"
+
 namespace colod::regions {
 namespace {
 
-constexpr double kRefitGrowth = 1.3;
+using namespace parameters::planes;
 
 /// Flat surroundings first, then large items.
 std::vector<int> seed_order(const Items& items, const std::vector<Vec3>& smooth) {

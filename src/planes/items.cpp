@@ -18,15 +18,15 @@
 #include "core/flat.h"
 #include "core/parallel.h"
 #include "core/rays.h"
+#include "parameters.h"
 
 namespace colod::regions {
 namespace {
 
+using namespace parameters::planes;
+
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-constexpr int kNearest = 14;              // neighbours of a point
-constexpr double kFloaterArea = 2;        // m²: a component at least this large is never a floater
-constexpr double kFloaterShare = 0.002;   // of the area: likewise
-constexpr double kFloaterDistance = 0.2;  // metres: what lies closer to the building belongs to it
+constexpr int kNearest = 14;  // neighbours of a point
 
 struct EdgeUse {
   int low, high, face;

@@ -8,10 +8,13 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "parameters.h"
 #include "region.h"
 
 namespace colod::regions {
 namespace {
+
+using namespace parameters::planes;
 
 /// Items around the start that look about the same way: all within `radius`, and a few at least.
 std::vector<int> neighborhood(const Items& items, int start, double radius,
@@ -35,7 +38,6 @@ std::vector<int> neighborhood(const Items& items, int start, double radius,
 
 double estimate_noise(const Items& items) {
   constexpr int kSamples = 600;
-  constexpr double kRadius = 1.5;  // metres: wide enough to see bumps beside white noise
   double total = 0;
   for (int i = 0; i < items.size(); ++i) total += items.is_used[i] ? items.area[i] : 0;
   std::vector<double> residuals;
@@ -47,7 +49,7 @@ double estimate_noise(const Items& items) {
     passed += items.area[i];
     if (std::floor(passed / total * kSamples) == before) continue;
     Moments m;
-    for (const int j : neighborhood(items, i, kRadius, mark)) m.add_item(items, j);
+    for (const int j : neighborhood(items, i, kNoiseRadius, mark)) m.add_item(items, j);
     const Vec3 n = m.fit(items.normal[i]);
     residuals.push_back(m.rms(n, n.dot(m.mean())));
   }

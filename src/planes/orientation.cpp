@@ -13,22 +13,15 @@
 #include "core/rays.h"
 #include "core/spread.h"
 #include "outline.h"
+#include "parameters.h"
 
 namespace colod::regions {
 namespace {
 
+using namespace parameters::planes;
+
 constexpr int kSamples = 24;    // places on a plane
 constexpr double kLift = 0.02;  // metres off the plane
-// A plane looks inward when most rays escape at its back and few at its front. Both: an open sheet,
-// which keeps the normals it was scanned with.
-constexpr double kLeastBack = 0.5, kMostFront = 0.35, kMostFrontOfFloor = 0.05,
-                 kClearMajority = 0.35;
-// Clouds. Airborne scanners see roofs from above only, however the normals were estimated.
-constexpr double kRoofTilt = 0.2;       // |z| of the normal: what is flatter is a roof
-constexpr double kOpenSky = 0.7;        // share of steep rays that leave a roof's upper side
-constexpr double kAirborneShare = 0.5;  // of the planes' area that is roof
-constexpr double kBesideWall = 0.5;     // metres off a wall, where a roof would stand above
-constexpr double kSheltered = 0.6, kUnsheltered = 0.25;  // share of steep rays that meet it
 
 /// Places spread evenly over the outline's area, the same at every call.
 std::vector<Vec3> spread_samples(const Outline& outline, int count) {
@@ -115,13 +108,13 @@ void flip(Plane& plane) {
 
 }  // namespace
 
-int repair_orientation(std::vector<Plane>& planes, bool is_cloud) {
+int repair_orientation(std::vector<Plane>& planes, bool is_airborne_told) {
   const Mesh soup = outline_soup(planes);
   if (soup.faces.empty()) return 0;
   const RayScene scene(soup);
   const std::vector<Vec3> up = ring_directions(64, std::array<double, 4>{1, 20, 45, 70});
   const std::vector<Vec3> down = ring_directions(32, std::array<double, 2>{-5, -15});
-  const bool is_from_air = is_cloud && is_airborne(planes);
+  const bool is_from_air = is_airborne_told && is_airborne(planes);
   std::vector<char> is_inward(planes.size(), 0);
   parallel_for(planes.size(), [&](std::size_t i) {
     const Plane& p = planes[i];

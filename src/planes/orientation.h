@@ -7,8 +7,9 @@
 
 namespace colod::regions {
 
-/// Turns planes from whose back clearly more rays escape than from their front; in airborne clouds
-/// what looks away from the sky or towards the roof above it. Returns how many.
-int repair_orientation(std::vector<Plane>& planes, bool is_cloud);
+/// Turns planes from whose back clearly more rays escape than from their front; in airborne clouds,
+/// where `is_airborne_told`, what looks away from the sky or towards the roof above it. Returns how
+/// many.
+int repair_orientation(std::vector<Plane>& planes, bool is_airborne_told);
 
 }  // namespace colod::regions

@@ -12,13 +12,14 @@
 #include "core/flat.h"
 #include "core/parallel.h"
 #include "growing.h"
+#include "parameters.h"
 
 namespace colod::regions {
 namespace {
 
-constexpr double kSmallHole = 0.25;     // m²
+using namespace parameters::planes;
+
 constexpr double kAlphaSpacings = 2.5;  // circumradius in point spacings
-constexpr double kLeastSine = 0.25;     // of the angle between planes that are drawn together
 
 /// Coordinates in a region's plane.
 struct Chart {
@@ -60,16 +61,16 @@ std::vector<Edge2> ring_edges(const std::vector<std::vector<Vec2>>& rings) {
 }
 
 /// Rings without small holes and specks, with few vertices.
-std::vector<std::vector<Vec2>> clean_rings(const Arrangement& a, double tolerance, bool is_robust) {
+std::vector<std::vector<Vec2>> clean_rings(const Arrangement& a, double tolerance, bool is_filled) {
   std::vector<std::vector<Vec2>> rings;
   std::size_t largest = 0;
   double largest_area = 0;
-  const double speck = is_robust ? std::min(0.05, 0.05 * a.area()) : 0;
+  const double speck = is_filled ? std::min(kSpeck, kSpeck * a.area()) : 0;
   for (const auto& ids : a.rings) {
     std::vector<Vec2> ring;
     for (const int i : ids) ring.push_back(a.vertices[i]);
     const double area = signed_area(ring);
-    if (area < 0 && is_robust && -area < kSmallHole) continue;
+    if (area < 0 && is_filled && -area < kSmallHole) continue;
     std::vector<Vec2> simple = simplify_ring(ring, tolerance);
     // A sliver keeps its corners: simplified away it would leave its plane without an outline.
     if (simple.empty() || std::abs(signed_area(simple)) < 0.5 * std::abs(area)) simple = ring;
@@ -142,7 +143,7 @@ Vec3 drawn_vertex(const Vec3& p, int a, const std::vector<Region>& regions,
     m.row(0) = ra.normal, m.row(1) = rb.normal, m.row(2) = rc.normal;
     if (std::abs(m.determinant()) < kLeastSine) continue;
     const Vec3 corner = m.inverse() * Vec3(ra.offset, rb.offset, rc.offset);
-    if ((corner - p).norm() <= 1.5 * limit) return corner;
+    if ((corner - p).norm() <= kCornerReach * limit) return corner;
   }
   return lines[0].point;
 }
@@ -194,23 +195,26 @@ double outline_area(const Outline& outline) {
 }
 
 std::vector<Outline> make_outlines(const Items& items, const std::vector<Region>& regions,
-                                   double distance, bool is_robust) {
+                                   double distance, const RuleSet& rules) {
   std::vector<Sheet> sheets;
   for (const Region& r : regions) sheets.push_back({Chart(r), {}});
   parallel_for(regions.size(), [&](std::size_t r) {
     const Arrangement raw = arrange(region_edges(items, regions[r], sheets[r].chart));
-    sheets[r].flat = arrange(ring_edges(clean_rings(raw, distance / 2, is_robust)));
+    sheets[r].flat = arrange(ring_edges(clean_rings(raw, distance / 2, rules.has(Rule::kHoles))));
     if (sheets[r].flat.triangles.empty()) sheets[r].flat = raw;
   });
   std::vector<Outline> outlines(regions.size());
-  const double limit = is_robust ? std::min(0.3, std::max(2 * distance, 2 * items.spacing)) : 0;
-  const auto neighbors = is_robust ? neighbor_lists(items, regions, limit)
-                                   : std::vector<std::vector<int>>(regions.size());
+  const bool is_drawn = rules.has(Rule::kBorders);
+  const double limit = is_drawn ? std::min(kMostBorderReach, std::max(kBorderReach * distance,
+                                                                      kBorderReach * items.spacing))
+                                : 0;
+  const auto neighbors = is_drawn ? neighbor_lists(items, regions, limit)
+                                  : std::vector<std::vector<int>>(regions.size());
   parallel_for(regions.size(), [&](std::size_t r) {
     outlines[r] = to_outline(
         sheets[r].chart,
-        is_robust ? draw_to_neighbors(static_cast<int>(r), regions, sheets, neighbors[r], limit)
-                  : sheets[r].flat);
+        is_drawn ? draw_to_neighbors(static_cast<int>(r), regions, sheets, neighbors[r], limit)
+                 : sheets[r].flat);
   });
   return outlines;
 }

@@ -94,6 +94,7 @@ std::vector<Region> grow_on_points(const Items& items, const PlaneOptions& optio
 }  // namespace
 
 std::vector<Region> grow_with_cgal(const Items& items, const PlaneOptions& options) {
+  if (std::find(items.is_used.begin(), items.is_used.end(), 1) == items.is_used.end()) return {};
   std::vector<Region> regions =
       items.is_mesh() ? grow_on_mesh(items, options) : grow_on_points(items, options);
   std::stable_sort(regions.begin(), regions.end(),

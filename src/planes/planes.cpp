@@ -17,6 +17,7 @@
 #include "orientation.h"
 #include "outline.h"
 #include "paper.h"
+#include "parameters.h"
 #include "region.h"
 #include "regularize.h"
 #include "round.h"
@@ -24,18 +25,7 @@
 namespace colod {
 namespace {
 
-using namespace regions;
-
-constexpr double kMoveShare = 1.0 / 3;  // of the growing distance: what aligning may cost
-constexpr double kLeastMove = 0.0005;   // metres: likewise without noise; files have mm
-constexpr double kOffsetWidth = 0.6;    // of the growing distance: parallel planes are one …
-constexpr double kLeastOffset = 0.05;   // metres: … and closer than this …
-constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
-constexpr double kMostDistance = 0.2;         // metres
-constexpr double kLeastShare = 1e-4;          // of the building's area: the least region …
-constexpr double kLeastShareExact = 3e-5;  // … of an exact model: large houses have windows, too
-constexpr double kMostShare = 0.01;        // a region this large is never too small
-constexpr std::size_t kMostPlanes = 4000;
+using namespace parameters::planes;
 
 double used_area(const Items& items) {
   double sum = 0;
@@ -56,37 +46,37 @@ Box used_box(const Items& items) {
 /// The foot of a cloud: a few points low on its walls are too few for a component, but they say
 /// where the walls end. Single points below are noise.
 void lower_to_foot(const Items& items, Box& box) {
-  constexpr double kBeside = 1, kTogether = 0.5;  // metres
-  constexpr std::size_t kLeastPoints = 4;
   std::vector<double> heights;
   for (int i = 0; i < items.size(); ++i) {
     const Vec3& p = items.source->cloud.points[i];
     const Vec3 beyond = (box.min - p).cwiseMax(p - box.max);  // > 0: out of the box
-    if (p.allFinite() && p.z() < box.min.z() && beyond.head<2>().maxCoeff() < kBeside)
+    if (p.allFinite() && p.z() < box.min.z() && beyond.head<2>().maxCoeff() < kFootBeside)
       heights.push_back(p.z());
   }
   std::sort(heights.begin(), heights.end());
-  for (std::size_t k = 0; k + kLeastPoints <= heights.size(); ++k)
-    if (heights[k + kLeastPoints - 1] - heights[k] < kTogether) {
+  for (std::size_t k = 0; k + kFootPoints <= heights.size(); ++k)
+    if (heights[k + kFootPoints - 1] - heights[k] < kFootHeight) {
       box.min.z() = heights[k];
       return;
     }
 }
 
 double growing_distance(double noise, const Box& box, const PlaneOptions& options) {
-  const double most = std::min({kMostDistance, options.distance, 0.02 * box.diagonal()});
+  const double most =
+      std::min({kMostDistance, options.distance, kMostDistanceShare * box.diagonal()});
   return std::min(std::max(kNoiseFactor * noise, kLeastDistance), most);
 }
 
 /// What noise excuses is aligned; an exact model keeps its planes, one of few planes each of them.
-AlignOptions align_options(double noise, double distance, const Box& box) {
+AlignOptions align_options(double noise, double distance, const Box& box, const RuleSet& rules) {
   const double most = kMoveShare * distance;
   const double excused = std::max(kLeastMove, kMoveShare * kNoiseFactor * noise);
   const double together = std::min(kLeastOffset, kLeastOffsetShare * box.diagonal());
   const double width = kOffsetWidth * distance;
   return {.least_move = std::min(excused, most),
           .most_move = most,
-          .offset_width = distance > kPlainDistance ? std::max(width, together) : width};
+          .offset_width = distance > kPlainDistance ? std::max(width, together) : width,
+          .is_strip_turned = rules.has(Rule::kNarrowStrips)};
 }
 
 /// The regions of an exact model of few planes, grown so tightly that walls which bend by a
@@ -100,15 +90,18 @@ std::vector<Region> plain_regions(const Items& items, Planes::Surface surface, d
 
 /// m²: regions below are no planes. Rougher surfaces need larger ones.
 double least_area(Planes::Surface surface, double distance, double total) {
-  const double absolute = std::clamp(2.5 * distance, 0.05, 0.25);
+  const double absolute = std::clamp(kAreaOfDistance * distance, kLeastArea, kLeastAreaRough);
   const double share = surface == Planes::Surface::kExact ? kLeastShareExact : kLeastShare;
   return std::min(std::max(absolute, share * total), kMostShare * total);
 }
 
-/// Drops small regions, but never the largest one.
-void drop_small(const Items& items, double least, int min_points, std::vector<Region>& regions) {
+/// Drops small regions, but never the largest one. `least`: m², of a mesh's; `min_points`: of a
+/// cloud's as well, and of a mesh's that are told by their count.
+void drop_small(const Items& items, double least, int min_points, bool is_by_area,
+                std::vector<Region>& regions) {
   const auto is_small = [&](const Region& r) {
-    return r.area < least || (!items.is_mesh() && static_cast<int>(r.items.size()) < min_points);
+    if (is_by_area && r.area < least) return true;
+    return !(is_by_area && items.is_mesh()) && static_cast<int>(r.items.size()) < min_points;
   };
   const bool is_none = std::all_of(regions.begin(), regions.end(), is_small);
   if (is_none && !regions.empty())
@@ -129,37 +122,58 @@ void set_used(const std::vector<Region>& regions, bool is_used, Items& items) {
     for (const int i : r.items) items.is_used[i] = is_used;
 }
 
+/// Regions of the items in use, before any is dropped for its size; sets the distance of growing
+/// and what the surface is.
+std::vector<Region> grow(const Items& items, const Box& box, double noise,
+                         const PlaneOptions& options, Planes& result) {
+  const RuleSet& rules = options.rules;
+  const double found = growing_distance(noise, box, options);
+  result.distance = rules.has(Rule::kNoise) ? found : options.distance;
+  result.surface = rules.is_none() ? surface_at(options.distance) : judge_surface(noise, found);
+  if (rules.has(Rule::kFewPlanes))
+    if (std::vector<Region> regions = plain_regions(items, result.surface, options.angle_deg);
+        !regions.empty()) {
+      result.distance = std::min(kPlainDistance, result.distance);
+      return regions;
+    }
+  if (!rules.has(Rule::kGrowing)) {
+    PlaneOptions growing = options;
+    growing.distance = result.distance;
+    if (rules.has(Rule::kRegionArea)) growing.min_points = items.is_mesh() ? 1 : 3;
+    return grow_with_cgal(items, growing);
+  }
+  const bool is_smooth = !rules.has(Rule::kSmoothNormals) || noise <= kSmoothedNoise;
+  return grow_regions(items, smooth_normals(items, is_smooth ? 0 : 2),
+                      {result.distance, options.angle_deg});
+}
+
 /// The regions of the items in use, which have a part of the building's `total` square metres.
 std::vector<Region> flat_regions(const Items& items, const Box& box, double total,
                                  const PlaneOptions& options, Planes& result) {
-  const double noise = estimate_noise(items);
-  result.distance = growing_distance(noise, box, options);
-  result.surface = judge_surface(noise, result.distance);
-  std::vector<Region> regions = plain_regions(items, result.surface, options.angle_deg);
-  if (!regions.empty()) {
-    result.distance = std::min(kPlainDistance, result.distance);
-  } else {
-    const std::vector<Vec3> smooth = smooth_normals(items, noise > kSmoothedNoise ? 2 : 0);
-    regions = grow_regions(items, smooth, {result.distance, options.angle_deg});
-  }
+  const double noise = options.rules.is_none() ? 0 : estimate_noise(items);
+  std::vector<Region> regions = grow(items, box, noise, options, result);
+  if (options.rules.is_none()) return regions;  // CGAL's are no smaller than it was told
+  const bool is_by_area = options.rules.has(Rule::kRegionArea);
   const double least = least_area(result.surface, result.distance, total);
-  drop_small(items, least / 4, options.min_points / 2, regions);
+  drop_small(items, least / 4, options.min_points / 2, is_by_area, regions);
   limit_count(regions, result.warnings);
-  regularize(items, result.distance, align_options(noise, result.distance, box), regions);
-  drop_small(items, least, options.min_points, regions);
+  regularize(items, result.distance, align_options(noise, result.distance, box, options.rules),
+             options.rules, regions);
+  drop_small(items, least, options.min_points, is_by_area, regions);
   return regions;
 }
 
-std::vector<Region> robust_regions(Items& items, const PlaneOptions& options, Planes& result) {
-  drop_floaters(items, result.warnings);
+std::vector<Region> find_regions(Items& items, const PlaneOptions& options, Planes& result) {
+  if (options.rules.has(Rule::kFloaters)) drop_floaters(items, result.warnings);
   const double total = used_area(items);
   const Box box = used_box(items);
-  std::vector<Region> round = round_regions(items);
+  std::vector<Region> round;
+  if (options.rules.has(Rule::kRoundSides)) round = round_regions(items, options.rules);
   set_used(round, false, items);
   std::vector<Region> regions = flat_regions(items, box, total, options, result);
   set_used(round, true, items);
   std::move(round.begin(), round.end(), std::back_inserter(regions));
-  absorb_rest(items, result.distance, regions);
+  if (options.rules.has(Rule::kAbsorb)) absorb_rest(items, result.distance, regions);
   return regions;
 }
 
@@ -173,8 +187,8 @@ void orient_by_items(const Items& items, std::vector<Region>& regions) {
 }
 
 std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, double distance,
-                             bool is_robust) {
-  std::vector<Outline> outlines = make_outlines(items, regions, distance, is_robust);
+                             const RuleSet& rules) {
+  std::vector<Outline> outlines = make_outlines(items, regions, distance, rules);
   std::vector<Plane> planes;
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (outlines[r].triangles.empty()) continue;
@@ -209,20 +223,19 @@ Planes::Surface surface_at(double distance) {
 Planes detect_planes(const Source& source, const PlaneOptions& options) {
   Planes result;
   Items items = collect_items(source);
-  result.distance = options.distance;
-  result.surface = surface_at(options.distance);
-  std::vector<Region> regions =
-      options.is_paper ? grow_with_cgal(items, options) : robust_regions(items, options, result);
+  const RuleSet& rules = options.rules;
+  std::vector<Region> regions = find_regions(items, options, result);
   orient_by_items(items, regions);
-  result.planes = to_planes(items, regions, result.distance, !options.is_paper);
+  result.planes = to_planes(items, regions, result.distance, rules);
   if (result.planes.empty())
     throw Error(Stage::kProcess, source.name, "no plane found: the surface is empty or too small");
-  if (!options.is_paper)
-    if (const int flipped = repair_orientation(result.planes, !items.is_mesh()); flipped > 0)
+  const bool is_airborne_told = !items.is_mesh() && rules.has(Rule::kAirborne);
+  if (rules.has(Rule::kOrientation))
+    if (const int flipped = repair_orientation(result.planes, is_airborne_told); flipped > 0)
       result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
   sort_planes(result.planes);
   result.box = used_box(items);
-  if (!options.is_paper && !items.is_mesh()) lower_to_foot(items, result.box);
+  if (rules.has(Rule::kFoot) && !items.is_mesh()) lower_to_foot(items, result.box);
   result.plane_of_item.assign(items.size(), -1);
   for (int i = 0; i < items.size(); ++i)
     if (items.is_floater[i]) result.plane_of_item[i] = kFloater;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/rules.h"
 
 namespace colod {
 
@@ -18,12 +19,13 @@ constexpr std::size_t kFewPlanes = 12;
 constexpr int kFloater = -2;
 
 struct PlaneOptions {
-  bool is_paper = false;  ///< to the letter: CGAL region growing at
-                          ///< `distance`/`angle_deg`/`min_points`, nothing else
-  double distance = 0.2;  ///< metres; robust: the most it may be, the value used is found from the
-                          ///< data (planes.cpp)
+  RuleSet rules = RuleSet::all();  ///< none: CGAL's region growing at the values below, nothing
+                                   ///< else
+  double distance = 0.2;  ///< metres; with Rule::kNoise the most it may be, the value used is found
+                          ///< from the data (planes.cpp)
   double angle_deg = 30;
-  int min_points = 20;  ///< robust: regions are filtered by area instead; for clouds both hold
+  int min_points = 20;  ///< with Rule::kRegionArea regions are filtered by area instead; for clouds
+                        ///< both hold
 };
 
 struct Planes {

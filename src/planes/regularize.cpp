@@ -20,22 +20,14 @@
 
 #include "core/flat.h"
 #include "growing.h"
+#include "parameters.h"
 
 namespace colod::regions {
 namespace {
 
-constexpr double kMergeAngleCosine = 0.9781;  // 12°
-constexpr double kMergeRms = 0.6;             // of the growing distance
-constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet …
-constexpr double kSheetShare = 0.5;           // … that lie over each other: of the smaller's area
+using namespace parameters::planes;
+
 constexpr std::size_t kSheetSamples = 64;  // items at least that tell it, where there are so many
-constexpr double kCrossedRms = 0.75;       // of the growing distance: one that a larger crosses,
-constexpr double kCentred = 0.15;          // of its RMS: its mean distance from that,
-constexpr double kCrossedArea = 0.25;      // of the larger one's area
-constexpr double kDegree = M_PI / 180;
-constexpr double kUpright = 0.17;           // sine of what may be turned level or upright
-constexpr double kMostTurn = 10 * kDegree;  // of a narrow strip, which hardly knows its direction
-constexpr double kNarrow = 0.3;  // metres: standard deviation across a strip about a metre wide
 
 // --- merging -------------------------------------------------------------------------------------
 
@@ -82,7 +74,8 @@ bool is_sheet(const Items& items, const Region& a, const Region& b) {
 }
 
 /// What joining would cost (RMS over the limit, ≤ 1 is allowed); infinite when out of question.
-double merge_cost(const Items& items, const Region& a, const Region& b, double distance) {
+double merge_cost(const Items& items, const Region& a, const Region& b, double distance,
+                  const RuleSet& rules) {
   const double none = std::numeric_limits<double>::infinity();
   const double along = a.normal.dot(b.normal);
   if (std::abs(along) < kMergeAngleCosine) return none;
@@ -93,7 +86,9 @@ double merge_cost(const Items& items, const Region& a, const Region& b, double d
   const Vec3 n = both.fit(a.area >= b.area ? a.normal : b.normal);
   const double d = n.dot(both.mean());
   const double cost = std::max(a.moments.rms(n, d), b.moments.rms(n, d)) / limit;
-  if (along < 0) return cost <= 1 && is_sheet(items, a, b) ? cost : none;
+  if (along < 0)
+    return cost <= 1 && (!rules.has(Rule::kSheetSides) || is_sheet(items, a, b)) ? cost : none;
+  if (!rules.has(Rule::kCrossing)) return cost;
   return std::min(cost,
                   a.area >= b.area ? crossing_cost(a, b, distance) : crossing_cost(b, a, distance));
 }
@@ -155,7 +150,8 @@ bool try_direction(Region& r, Vec3 n, const AlignOptions& options) {
   const double cosine = n.dot(r.normal);
   if (cosine < std::cos(kMostTurn)) return false;
   const Eigen::Matrix3d covariance = r.moments.covariance();
-  if (cosine < std::cos((r.area < 1 ? 5 : 3) * kDegree)) {
+  if (cosine < std::cos(r.area < kSmallArea ? kTurnSmall : kTurn)) {
+    if (!options.is_strip_turned) return false;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
     if (solver.eigenvalues()[1] > kNarrow * kNarrow) return false;
   }
@@ -197,15 +193,19 @@ bool try_family(Region& r, const Family& f, const AlignOptions& options) {
 
 enum class Kind : char { kLevel, kWall, kSlope };
 
-std::vector<Kind> snap_to_upright(std::vector<Region>& regions, const AlignOptions& options) {
+std::vector<Kind> snap_to_upright(std::vector<Region>& regions, const AlignOptions& options,
+                                  bool is_snapped) {
+  const auto snap = [&](Region& r, const Vec3& n) {
+    return !is_snapped || try_direction(r, n, options);
+  };
   std::vector<Kind> kinds;
   for (Region& r : regions) {
     const double h = std::hypot(r.normal.x(), r.normal.y());
     Kind kind = Kind::kSlope;
-    if (h < kUpright && try_direction(r, Vec3::UnitZ(), options))
+    if (h < kUpright && snap(r, Vec3::UnitZ()))
       kind = Kind::kLevel;
     else if (std::abs(r.normal.z()) < kUpright &&
-             try_direction(r, Vec3(r.normal.x() / h, r.normal.y() / h, 0), options))
+             snap(r, Vec3(r.normal.x() / h, r.normal.y() / h, 0)))
       kind = Kind::kWall;
     kinds.push_back(kind);
   }
@@ -249,7 +249,7 @@ bool try_tilts(Region& r, const std::vector<double>& tilts, const AlignOptions& 
   if (h < 1e-9) return false;
   const double own = std::atan2(h, std::abs(r.normal.z()));
   for (const double tilt : tilts) {
-    if (std::abs(tilt - own) > 5 * kDegree) continue;
+    if (std::abs(tilt - own) > kSameTilt) continue;
     const double sign = r.normal.z() < 0 ? -1 : 1;
     const Vec3 n(std::sin(tilt) * (r.normal.x() / h), std::sin(tilt) * (r.normal.y() / h),
                  sign * std::cos(tilt));
@@ -277,9 +277,12 @@ struct DirectionTable {
   }
 };
 
-void align_directions(std::vector<Region>& regions, const AlignOptions& options) {
-  const std::vector<Kind> kinds = snap_to_upright(regions, options);
-  const std::vector<Family> families = wall_families(regions, kinds, options);
+void align_directions(std::vector<Region>& regions, const AlignOptions& options,
+                      const RuleSet& rules) {
+  const bool has_families = rules.has(Rule::kFamilies);
+  const std::vector<Kind> kinds = snap_to_upright(regions, options, rules.has(Rule::kUpright));
+  const std::vector<Family> families =
+      has_families ? wall_families(regions, kinds, options) : std::vector<Family>();
   std::vector<double> tilts;
   DirectionTable table;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -287,11 +290,11 @@ void align_directions(std::vector<Region>& regions, const AlignOptions& options)
     bool is_aligned = kinds[i] == Kind::kLevel;
     for (std::size_t k = 0; k < families.size() && !is_aligned; ++k)
       is_aligned = try_family(r, families[k], options);
-    if (kinds[i] == Kind::kSlope && !try_tilts(r, tilts, options)) {
+    if (rules.has(Rule::kTilts) && kinds[i] == Kind::kSlope && !try_tilts(r, tilts, options)) {
       tilts.push_back(std::atan2(std::hypot(r.normal.x(), r.normal.y()), std::abs(r.normal.z())));
       try_tilts(r, {tilts.back()}, options);  // the same arithmetic as for those that follow it
     }
-    for (std::size_t k = 0; k < table.known.size() && !is_aligned; ++k)
+    for (std::size_t k = 0; has_families && k < table.known.size() && !is_aligned; ++k)
       is_aligned = try_direction(r, table.known[k], options);
     r.normal = table.same(r.normal.normalized());
     r.offset = r.normal.dot(r.moments.mean());
@@ -349,16 +352,19 @@ void align_offsets(std::vector<Region>& regions, double width) {
 }  // namespace
 
 void regularize(const Items& items, double distance, const AlignOptions& align,
-                std::vector<Region>& regions) {
-  merge_neighbors(items, distance, true, regions, [&](const Region& a, const Region& b) {
-    return merge_cost(items, a, b, distance);
-  });
-  align_directions(regions, align);
+                const RuleSet& rules, std::vector<Region>& regions) {
+  if (rules.has(Rule::kCoplanar))
+    merge_neighbors(items, distance, true, regions, [&](const Region& a, const Region& b) {
+      return merge_cost(items, a, b, distance, rules);
+    });
+  if (rules.has(Rule::kUpright) || rules.has(Rule::kFamilies) || rules.has(Rule::kTilts))
+    align_directions(regions, align, rules);
+  if (!rules.has(Rule::kOffsets)) return;
   align_offsets(regions, align.offset_width);
   merge_neighbors(items, distance, false, regions, [&](const Region& a, const Region& b) {
     const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
     if (a.normal != sign * b.normal || a.offset != sign * b.offset) return 2.0;
-    return sign > 0 || is_sheet(items, a, b) ? 0.0 : 2.0;
+    return sign > 0 || !rules.has(Rule::kSheetSides) || is_sheet(items, a, b) ? 0.0 : 2.0;
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/rules.h"
 #include "items.h"
 #include "region.h"
 
@@ -14,10 +15,11 @@ struct AlignOptions {
   double least_move;
   double most_move;
   double offset_width;
+  bool is_strip_turned;  ///< whether narrow strips may turn farther than others
 };
 /// Joins nearly coplanar neighbours, then aligns directions and offsets where a region's own points
-/// allow.
+/// allow, as far as the rules for each are on.
 void regularize(const Items& items, double distance, const AlignOptions& align,
-                std::vector<Region>& regions);
+                const RuleSet& rules, std::vector<Region>& regions);
 
 }  // namespace colod::regions

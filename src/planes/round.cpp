@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parameters.h"
 #include "rounds/reduce.h"
 #include "rounds/rounds.h"
 
 namespace colod::regions {
 namespace {
 
-constexpr std::size_t kMostSides = 2500;  // of a shape: more take half a minute to cut
-constexpr double kFinest = 0.01;  // metres between a side and its arc: twice in both directions
+using namespace parameters::planes;
 
 Region side_region(const Items& items, const RoundShape& shape, const RoundShape::Side& side) {
   Region r;
@@ -27,9 +27,9 @@ Region side_region(const Items& items, const RoundShape& shape, const RoundShape
 
 }  // namespace
 
-std::vector<Region> round_regions(const Items& items) {
+std::vector<Region> round_regions(const Items& items, const RuleSet& rules) {
   std::vector<Region> regions;
-  for (const RoundShape& shape : find_rounds(*items.source)) {
+  for (const RoundShape& shape : find_rounds(*items.source, rules)) {
     const bool is_fine = shape.sides.size() <= kMostSides;
     const RoundShape drawn = is_fine ? shape : reduce_round(shape, turn_within(shape, kFinest));
     for (const RoundShape::Side& side : drawn.sides)

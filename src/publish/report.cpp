@@ -8,6 +8,7 @@
 
 #include "exporters/exporter.h"
 #include "pipeline/losses.h"
+#include "rules/rules.h"
 #include "scene/left_out.h"
 
 namespace colod {
@@ -17,7 +18,8 @@ using Json = nlohmann::ordered_json;
 
 Json parameters_json(const Options& options) {
   Json json;
-  json["rules"] = options.rules == Rules::kPaper ? "paper" : "robust";
+  json["rules"] = options.rules.is_none() ? "paper" : "robust";
+  if (!options.rules.is_none() && !options.rules.is_all()) json["without"] = ids_off(options.rules);
   json["visibility"] = name_of(options.visibility);
   json["layering"] = options.is_size_layering ? "size" : "spectral";
   for (const OptionInfo& info : option_table()) {

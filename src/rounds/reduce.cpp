@@ -10,15 +10,15 @@
 #include <map>
 #include <tuple>
 
+#include "parameters.h"
 #include "sides.h"
 
 namespace colod {
 namespace {
 
+using namespace parameters::round_layers;
+
 using rounds::kMostStep;
-constexpr double kSameLength = 2.5;    // rows of a run differ by less: a drum is no row of its dome
-constexpr double kLeastBend = 0.02;    // radians: what files with mm do not turn by chance
-constexpr double kHardlyFewer = 0.75;  // of the sides: then all stay
 
 /// Rows first … last − 1.
 struct Run {

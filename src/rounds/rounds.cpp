@@ -23,17 +23,9 @@ namespace rounds {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLeastBend = 0.05 * kDegree;  // between faces of two sides: small near an apex
-constexpr double kLeastStep = 1.5 * kDegree;
 constexpr double kMostEdges = 50000;  // curved edges; scans have more
-constexpr double kOnAxis = 0.01;      // metres: files have mm, and narrow sides turn by them
-constexpr double kSameStep = 0.05;    // of the step
 constexpr std::size_t kSamples = 96;  // meridians that votes begin with
 constexpr std::size_t kPartners = 4;  // of each
-constexpr int kLeastMeridians = 4;    // different ones
-constexpr double kClosedShare = 0.6;  // of all columns: the others are hidden in a house
-constexpr double kLeastShare = 0.01;  // of the source's area
-constexpr double kLeastArea = 5;      // m²: smaller ones are pipes and balusters
 constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
 
@@ -311,7 +303,7 @@ std::vector<RoundShape> find_stretched(const Eigen::Matrix3d& stretch, Facets& f
 }  // namespace
 }  // namespace rounds
 
-std::vector<RoundShape> find_rounds(const Source& source) {
+std::vector<RoundShape> find_rounds(const Source& source, const RuleSet& rules) {
   using namespace rounds;
   std::vector<RoundShape> shapes;
   if (!source.is_mesh()) return shapes;
@@ -321,8 +313,9 @@ std::vector<RoundShape> find_rounds(const Source& source) {
   const auto add = [&](std::vector<RoundShape> more) {
     std::move(more.begin(), more.end(), std::back_inserter(shapes));
   };
-  for (const Eigen::Matrix3d& stretch : find_stretches(facets, edges))
-    add(find_stretched(stretch, facets));
+  if (rules.has(Rule::kEllipses))
+    for (const Eigen::Matrix3d& stretch : find_stretches(facets, edges))
+      add(find_stretched(stretch, facets));
   add(find_along(Vec3::UnitZ(), edges, facets));
   for (const Vec3& direction : level_directions(edges)) add(find_along(direction, edges, facets));
   return shapes;

@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/rules.h"
 #include "shape.h"
 
 namespace colod {
 
 /// The round shapes of a mesh that is exact to the millimetre, largest evidence first; each face is
-/// in one at most. None in clouds and scans. Deterministic; about 1 s for 50,000 curved edges.
-std::vector<RoundShape> find_rounds(const Source& source);
+/// in one at most; elliptical ones by Rule::kEllipses. None in clouds and scans. Deterministic;
+/// about 1 s for 50,000 curved edges.
+std::vector<RoundShape> find_rounds(const Source& source, const RuleSet& rules = RuleSet::all());
 
 }  // namespace colod

@@ -13,11 +13,6 @@ namespace colod::rounds {
 namespace {
 
 constexpr std::size_t kMostRows = 400;
-constexpr int kLeastTogether = 3;      // columns side by side that make a row
-constexpr double kAlike = 0.98;        // cosine of a narrow face's normal and its side's
-constexpr double kSteepest = 0.01;     // of a normal across the axis: less has no column
-constexpr double kHardlyFewer = 0.98;  // of the faces that a looser tolerance places
-constexpr double kJoined = 0.02;       // metres between the ends of rows that follow each other
 
 /// A line in the half-plane, and who lies on it.
 struct Line {

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "parameters.h"
 #include "shape.h"
 
 namespace colod::rounds {
 
-constexpr double kMostStep = 31 * std::numbers::pi / 180;  ///< twelve sides and more are round
-constexpr double kOffPlane = 0.003;  ///< metres that a side's corners may be off its plane
+using namespace parameters::rounds;
 
 /// The faces of a mesh with their planes.
 struct Facets {

@@ -17,10 +17,6 @@ namespace colod::rounds {
 namespace {
 
 constexpr std::size_t kMostPieces = 8;
-constexpr std::size_t kLeastCorners = 12;  // of the plan: a polygon of fewer sides is not round
-constexpr double kNarrowest = 0.25;        // of the longer axis: tolerances grow as it shrinks
-constexpr double kRound = 0.995;           // a circle
-constexpr double kSame = 0.002;            // between two stretches
 
 /// Pieces of curved surface that are connected, each its faces, by falling area.
 std::vector<std::vector<int>> curved_pieces(const Facets& facets,
@@ -86,8 +82,9 @@ std::vector<Eigen::Matrix3d> find_stretches(const Facets& facets,
     Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
     stretch.topLeftCorner<2, 2>() =
         spread.eigenvectors() * Vec2(narrow, 1).asDiagonal() * spread.eigenvectors().transpose();
-    if (std::none_of(stretches.begin(), stretches.end(),
-                     [&](const auto& s) { return (s - stretch).cwiseAbs().maxCoeff() < kSame; }))
+    if (std::none_of(stretches.begin(), stretches.end(), [&](const auto& s) {
+          return (s - stretch).cwiseAbs().maxCoeff() < kSameStretch;
+        }))
       stretches.push_back(stretch);
   }
   return stretches;

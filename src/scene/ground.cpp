@@ -14,27 +14,14 @@
 #include <limits>
 
 #include "left_out.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
+using namespace parameters::ground;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLeastCell = 0.25, kMostCell = 1;  // metres
-constexpr double kCellShare = 1.0 / 200;            // of the diagonal
-constexpr double kNoise = 0.15;         // metres of height between neighbours, besides …
-constexpr double kSteepest = 0.4;       // … this slope
-constexpr double kOverhang = 2;         // metres that a flat roof's rim stands out from its walls
-constexpr double kLeastRim = 0.5;       // of the rim that the ground holds
-constexpr double kMostly = 0.8;         // of the ground's rim that has no storey below
-constexpr double kRise = 2;             // metres that a building rises
-constexpr double kLeastBuilt = 0.05;    // of the covered cells that are the building …
-constexpr double kSurelyBuilt = 12;     // … or square metres: a plot may be as large as it likes
-constexpr double kFoot = 1;             // metres above the ground by which walls have come down
-constexpr double kReach = 1.5;          // metres that eaves stand out from their wall
-constexpr double kSmallBlob = 0.05;     // of the largest one's area
-constexpr double kGroundLayer = 0.4;    // metres: level faces this near to the ground are its own
-constexpr double kGroundNormal = 0.35;  // of a level face, upright: the ground banks up at walls
-constexpr double kOnGround = 0.5;       // metres: what ends lower is part of the ground
 
 struct Raster {
   Vec2 origin;

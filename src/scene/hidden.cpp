@@ -16,26 +16,14 @@
 #include "core/spread.h"
 #include "hidden_parts.h"
 #include "left_out.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kCube = 2.5;          // metres: more than windows and doors are wide or high
-constexpr double kFinest = kCube / 9;  // metres: a voxel of most buildings
-constexpr double kDepth = 0.2;         // metres, and two voxels: from reveals the outside is nearer
-// Of a cavity's walls: porches, niches and passages are open more widely (one of 2 by 2 m that goes
-// 4 m deep: 0.11), rooms less (0.02 to 0.05; a shop without its front 0.07).
-constexpr double kOpenShare = 0.08;
-constexpr double kMostVoxels = 4e6;    // of them: larger buildings get larger voxels
-constexpr double kLeastHidden = 0.02;  // of the area: what is less is a fold, not an inside
-constexpr int kGateSamples = 4000;     // over the whole surface, to begin with
-constexpr double kSampleArea = 0.25;   // m² that a sample stands for
-constexpr int kMostSamples = 64;       // of a face
-constexpr int kRays = 64;              // of a sample, over the sphere
-constexpr int kSeen = 2;               // of its rays: one may slip through a seam
-constexpr double kLift = 0.002;        // metres off the face that rays start
+using namespace parameters::hidden;
+
 constexpr double kGrid = 1.0 / 65536;  // metres: the local frame's (read/frame.h)
-constexpr double kMostlySeen = 0.5;    // of a piece's samples
 
 /// The space about a building in voxels: which of them are outside.
 class Surroundings {

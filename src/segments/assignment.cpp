@@ -13,15 +13,14 @@
 
 #include "core/parallel.h"
 #include "core/spread.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSteps[] = {1.0, 1.7, 2.4};  // voxels
-constexpr int kMostSamples = 4096;            // a plane
-constexpr double kFacing = -0.7;              // cosine between normals that face each other
-constexpr double kParallel = 0.94;            // cosine (20°) up to which normals are not parallel
-constexpr std::size_t kLeastPlanes = 3;
+using namespace parameters::segments;
+
+constexpr int kMostSamples = 4096;  // a plane
 
 struct Sample {
   Vec3 point;

@@ -10,21 +10,19 @@
 #include <array>
 #include <map>
 
+#include "parameters.h"
 #include "rules.h"
 
 namespace colod {
 namespace {
 
-constexpr std::size_t kMostTogether = 6;  // segments of a set: more are never dropped together
-// Of the fidelity: with less a spire may go, with a half of it repeated balconies, dormers and
-// chimneys stay (seen on made-up scans of seeds 1 and 2).
-constexpr double kOutlineShare = 0.3;
+using namespace parameters::segments;
 
 /// Sets of segments, numbered; 0 is the empty one: nobody can open the voxel.
 class Sets {
  public:
   int number(const std::vector<int>& set) {
-    if (set.empty() || set.size() > kMostTogether) return 0;
+    if (set.empty() || std::ssize(set) > kMostTogether) return 0;
     const auto [at, is_new] = numbers_.try_emplace(set, static_cast<int>(sets_.size()));
     if (is_new) sets_.push_back(set);
     return at->second;
@@ -88,7 +86,7 @@ std::vector<double> outline_counts(const HitGrid& grid, const std::vector<int>& 
         for (const int s : sets[set])
           if (std::find(together.begin(), together.end(), s) == together.end())
             together.push_back(s);
-        is_kept |= together.size() > kMostTogether;
+        is_kept |= std::ssize(together) > kMostTogether;
       }
       if (!is_shown) continue;
       std::sort(together.begin(), together.end());

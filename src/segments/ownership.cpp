@@ -10,15 +10,12 @@
 #include <algorithm>
 
 #include "elements/elements.h"
+#include "parameters.h"
 
 namespace colod {
 namespace {
 
-constexpr double kMostOthers = 2.0;     // of the element's area: planes of others in its segment
-constexpr double kChimneyReach = 0.25;  // metres around a chimney: planes there are its own
-constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps chimneys: two
-                                // windows' reveals look like one
-constexpr double kSameElement = 0.5;  // of its area that an earlier one has taken: it is that one
+using namespace parameters::segments;
 
 double area_of(const Planes& planes, const std::vector<int>& which) {
   double sum = 0;
@@ -104,14 +101,16 @@ void part_chimney(const Planes& planes, const HitGrid& grid, const Element& chim
 
 }  // namespace
 
-void give_to_elements(const Planes& planes, const HitGrid& grid, double alcove_area,
+void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
                       SegmentDraft& draft) {
+  const bool has_forms = options.rules.has(Rule::kElementSegments);
+  if (!has_forms && !options.rules.has(Rule::kChimneySegments)) return;
   std::vector<int> every(planes.planes.size());
   for (std::size_t p = 0; p < every.size(); ++p) every[p] = static_cast<int>(p);
   std::vector<char> is_taken(planes.planes.size(), 0);
-  const std::vector<Element> elements = find_elements(planes, every);
+  const std::vector<Element> elements = find_elements(planes, every, options.rules);
   for (const Element& element : elements) {
-    if (!may_own(planes, element, alcove_area)) continue;
+    if (!has_forms || !may_own(planes, element, options.alcove_area)) continue;
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
     for (const int p : element.planes)
       if (!is_taken[p]) free.push_back(p);
@@ -143,9 +142,9 @@ void give_to_elements(const Planes& planes, const HitGrid& grid, double alcove_a
         s.voxels = 0, s.volume = 0;
       }
   }
-  for (const Element& element :
-       elements)  // others may have taken a chimney's walls: a dormer's cheeks
-    if (element.kind == ElementKind::kChimney) part_chimney(planes, grid, element, is_taken, draft);
+  for (const Element& element : elements)  // others may have taken a chimney's walls: a dormer's
+    if (options.rules.has(Rule::kChimneySegments) && element.kind == ElementKind::kChimney)
+      part_chimney(planes, grid, element, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
 }
 

@@ -8,9 +8,9 @@
 namespace colod {
 
 /// The planes of each balcony, and of each loggia all of whose planes are smaller than
-/// `alcove_area`, become one segment, and the walls of a chimney that its segment has little of;
-/// before the coverage is known.
-void give_to_elements(const Planes& planes, const HitGrid& grid, double alcove_area,
+/// `alcove_area`, become one segment (Rule::kElementSegments), and the walls of a chimney that its
+/// segment has little of (Rule::kChimneySegments); what was known of the coverage is void.
+void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
                       SegmentDraft& draft);
 
 }  // namespace colod

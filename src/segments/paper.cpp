@@ -1,4 +1,6 @@
-// Based on: Architectural Co-LOD Generation (ACM TOG 43(6), 2024), Algorithm 1, to the letter.
+// Based on: Architectural Co-LOD Generation (ACM TOG 43(6), 2024), Algorithm 1, to the letter where
+// no
+//   rule is on; the others may be on without kAlcoves, which has another order of passes.
 // Differs: nothing on purpose. What the paper leaves open: a voxel needs n_r/2 valid hits (the
 //   party wall rule is off); pairs are checked in the order of their first voxels; a plane belongs
 //   to S_a as soon as a valid voxel of the first pass sees it; a segment of S_a is called an alcove
@@ -10,17 +12,18 @@
 #include <algorithm>
 #include <map>
 
-#include "assignment.h"
+#include "ownership.h"
 #include "rules.h"
 
 namespace colod {
 namespace {
 
-OwnedGroups aggregate(const HitGrid& grid, std::size_t planes) {
-  OwnedGroups owned;
-  owned.groups = merge_groups(grid, group_voxels(grid), MergeRule::kMembership);
-  owned.group_of_plane = assign_to_most_hits(planes, owned.groups);
-  return drop_planeless(grid, std::move(owned));
+/// The planes as a pass sees them: what lies behind a reversed one is in front of it.
+Planes turned(const Planes& planes, const std::vector<char>& is_reversed) {
+  Planes result = planes;
+  for (std::size_t p = 0; p < is_reversed.size(); ++p)
+    if (is_reversed[p]) result.planes[p].normal = -result.planes[p].normal;
+  return result;
 }
 
 bool is_mostly_reversed(const VoxelGroup& group, const std::vector<char>& is_reversed) {
@@ -50,20 +53,19 @@ std::vector<Coverage> overlay_coverage(const HitGrid& a, const VoxelGroups& grou
 
 Segments paper_segments(const Planes& planes, const SegmentOptions& options) {
   const std::size_t n = planes.planes.size();
-  VisibilityOptions visibility = options.visibility;
-  visibility.is_party_wall_rule = false;
   std::vector<char> is_reversed(n), is_active(n);
   for (std::size_t p = 0; p < n; ++p) is_reversed[p] = planes.planes[p].area < options.alcove_area;
 
-  const HitGrid grid_a = cast_visibility(planes, visibility, {}, is_reversed);
-  const OwnedGroups a = aggregate(grid_a, n);
+  const HitGrid grid_a = cast_visibility(planes, options.visibility, {}, is_reversed);
+  const OwnedGroups a = drop_planeless(grid_a, own_groups(turned(planes, is_reversed), grid_a,
+                                                          std::vector<char>(n, 1), options.rules));
   for (std::size_t p = 0; p < n; ++p) is_active[p] = a.group_of_plane[p] < 0;
 
   HitGrid grid_c;
   OwnedGroups c;
   if (std::find(is_active.begin(), is_active.end(), 1) != is_active.end()) {
-    grid_c = cast_visibility(planes, visibility, is_active);
-    c = aggregate(grid_c, n);
+    grid_c = cast_visibility(planes, options.visibility, is_active);
+    c = drop_planeless(grid_c, own_groups(planes, grid_c, is_active, options.rules));
   }
   SegmentDraft draft;
   const int first_a = append_segments(grid_a, a, draft);
@@ -71,6 +73,10 @@ Segments paper_segments(const Planes& planes, const SegmentOptions& options) {
     draft.segments[first_a + g].is_alcove = is_mostly_reversed(a.groups.groups[g], is_reversed);
   const int first_c = append_segments(grid_c, c, draft);
   draft.coverage = overlay_coverage(grid_a, a.groups, first_a, grid_c, c.groups, first_c);
+  if (options.rules.has(Rule::kElementSegments) || options.rules.has(Rule::kChimneySegments)) {
+    give_to_elements(planes, grid_a, options, draft);
+    cover_plain(draft);
+  }
   Segments out = finish_segments(planes, std::move(draft));
   out.rays = grid_a.rays + grid_c.rays;
   out.visibility_seconds = grid_a.seconds + grid_c.seconds;

@@ -16,41 +16,13 @@
 
 #include "assignment.h"
 #include "ownership.h"
+#include "parameters.h"
 #include "rules.h"
 
 namespace colod {
 namespace {
 
-constexpr std::int64_t kLeastVoxels = 20;
-constexpr double kSmallRatio = 0.1;  // of the largest plane: the most a plane of an alcove may be
-constexpr double kFrontShare = 0.4;  // of a plane's area in front of which an alcove must lie
-constexpr double kDetailShare = 0.005;  // of the enclosed voxels: the most a detail may have
-constexpr double kDetailContact = 0.2;  // of the surface of one of two details that are one
-constexpr double kMergeOverlap = 0.5;   // the paper's
-
-VoxelGroups aggregate(const HitGrid& grid, const HitFilter& filter) {
-  VoxelGroups groups =
-      merge_groups(grid, group_voxels(grid, filter), MergeRule::kHistogram, kMergeOverlap);
-  std::vector<char> is_kept;
-  for (const VoxelGroup& g : groups.groups) is_kept.push_back(g.voxels >= kLeastVoxels);
-  return join_groups(grid, std::move(groups), is_kept, false);
-}
-
-OwnedGroups closed_groups(const Planes& planes, const HitGrid& grid) {
-  OwnedGroups closed;
-  closed.groups = aggregate(grid, {});
-  std::int64_t voxels = 0;  // enclosed ones
-  for (const VoxelGroup& g : closed.groups.groups) voxels += g.voxels;
-  closed.groups = join_details(
-      grid, std::move(closed.groups),
-      static_cast<std::int64_t>(kDetailShare * static_cast<double>(voxels)), kDetailContact);
-  closed.group_of_plane = assign_to_most_hits(planes.planes.size(), closed.groups);
-  const std::vector<PlaneSide> behind =
-      look_beside_planes(planes, grid, closed.groups.group_of_voxel, Side::kBehind);
-  for (std::size_t p = 0; p < behind.size(); ++p)
-    if (behind[p].group >= 0) closed.group_of_plane[p] = behind[p].group;
-  return closed;
-}
+using namespace parameters::segments;
 
 std::vector<char> small_planes(const Planes& planes, double alcove_area) {
   double largest = 0;
@@ -88,18 +60,19 @@ std::vector<char> planes_for_alcoves(const std::vector<char>& is_small, const Ow
 }
 
 OwnedGroups alcove_groups(const Planes& planes, const HitGrid& grid, const OwnedGroups& closed,
-                          double alcove_area) {
-  const HitFilter filter = alcove_filter(grid, small_planes(planes, alcove_area));
+                          const SegmentOptions& options) {
+  const HitFilter filter = alcove_filter(grid, small_planes(planes, options.alcove_area));
   OwnedGroups alcoves;
-  alcoves.groups = aggregate(grid, filter);
+  alcoves.groups = aggregate(grid, filter, options.rules);
   const std::vector<PlaneSide> front =
       look_beside_planes(planes, grid, alcoves.groups.group_of_voxel, Side::kFront);
   const std::vector<char> may_take = planes_for_alcoves(filter.is_counted, closed);
   alcoves.group_of_plane.assign(front.size(), -1);
   for (std::size_t p = 0; p < front.size(); ++p)
     if (may_take[p] && front[p].share >= kFrontShare) alcoves.group_of_plane[p] = front[p].group;
-  alcoves.group_of_plane = guard_alcoves(planes, std::move(alcoves.group_of_plane),
-                                         static_cast<int>(alcoves.groups.groups.size()));
+  if (options.rules.has(Rule::kAlcoveGuard))
+    alcoves.group_of_plane = guard_alcoves(planes, std::move(alcoves.group_of_plane),
+                                           static_cast<int>(alcoves.groups.groups.size()));
   return alcoves;
 }
 
@@ -113,8 +86,9 @@ void append_alcoves(const HitGrid& grid, const OwnedGroups& alcoves, SegmentDraf
 }  // namespace
 
 Segments robust_segments(const Planes& planes, const HitGrid& grid, const SegmentOptions& options) {
-  OwnedGroups closed = closed_groups(planes, grid);
-  const OwnedGroups alcoves = alcove_groups(planes, grid, closed, options.alcove_area);
+  const std::vector<char> is_active(planes.planes.size(), 1);
+  OwnedGroups closed = own_groups(planes, grid, is_active, options.rules);
+  const OwnedGroups alcoves = alcove_groups(planes, grid, closed, options);
   for (std::size_t p = 0; p < planes.planes.size(); ++p)
     if (alcoves.group_of_plane[p] >= 0) closed.group_of_plane[p] = -1;
   closed = drop_planeless(grid, std::move(closed));
@@ -122,9 +96,11 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   SegmentDraft draft;
   append_segments(grid, closed, draft);
   append_alcoves(grid, alcoves, draft);
-  give_to_elements(planes, grid, options.alcove_area, draft);
+  give_to_elements(planes, grid, options, draft);
+  const bool has_fidelity = options.rules.has(Rule::kFidelity);
+  if (!has_fidelity) cover_plain(draft);
   Segments result = finish_segments(planes, std::move(draft));
-  result.coverage = fidelity_coverage(grid, result);
+  if (has_fidelity) result.coverage = fidelity_coverage(grid, result);
   return result;
 }
 

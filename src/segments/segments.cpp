@@ -8,12 +8,17 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <limits>
 #include <numeric>
 
+#include "assignment.h"
+#include "parameters.h"
 #include "rules.h"
 
 namespace colod {
 namespace {
+
+using namespace parameters::segments;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -42,6 +47,43 @@ void put_in_order(SegmentDraft& draft) {
 }
 
 }  // namespace
+
+VoxelGroups aggregate(const HitGrid& grid, const HitFilter& filter, const RuleSet& rules) {
+  const MergeRule rule =
+      rules.has(Rule::kHistograms) ? MergeRule::kHistogram : MergeRule::kMembership;
+  VoxelGroups groups = merge_groups(grid, group_voxels(grid, filter), rule, kMergeOverlap);
+  if (!rules.has(Rule::kSpecks)) return groups;
+  std::vector<char> is_kept;
+  for (const VoxelGroup& g : groups.groups) is_kept.push_back(g.voxels >= kLeastVoxels);
+  return join_groups(grid, std::move(groups), is_kept, false);
+}
+
+OwnedGroups own_groups(const Planes& planes, const HitGrid& grid,
+                       const std::vector<char>& is_active, const RuleSet& rules) {
+  OwnedGroups own;
+  own.groups = aggregate(grid, {}, rules);
+  std::int64_t voxels = 0;  // enclosed ones
+  for (const VoxelGroup& g : own.groups.groups) voxels += g.voxels;
+  if (rules.has(Rule::kDetails))
+    own.groups = join_details(grid, std::move(own.groups),
+                              static_cast<std::int64_t>(kDetailShare * static_cast<double>(voxels)),
+                              kDetailContact);
+  own.group_of_plane = assign_to_most_hits(planes.planes.size(), own.groups);
+  if (!rules.has(Rule::kBehind)) return own;
+  const std::vector<PlaneSide> behind =
+      look_beside_planes(planes, grid, own.groups.group_of_voxel, Side::kBehind);
+  for (std::size_t p = 0; p < behind.size(); ++p)
+    if (is_active[p] && behind[p].group >= 0) own.group_of_plane[p] = behind[p].group;
+  return own;
+}
+
+void cover_plain(SegmentDraft& draft) {
+  draft.coverage.clear();
+  for (std::size_t s = 0; s < draft.segments.size(); ++s)
+    if (draft.segments[s].kind == ElementKind::kPlain)
+      draft.coverage.push_back(
+          {{static_cast<int>(s)}, static_cast<double>(draft.segments[s].voxels)});
+}
 
 OwnedGroups drop_planeless(const HitGrid& grid, OwnedGroups owned) {
   std::vector<char> is_kept(owned.groups.groups.size(), 0);
@@ -110,12 +152,15 @@ Segments build_segments(const Planes& planes, const SegmentOptions& options) {
   assert(!planes.planes.empty());
   const auto start = std::chrono::steady_clock::now();
   Segments out;
-  if (options.is_paper) {
-    out = paper_segments(planes, options);
-  } else {
-    const HitGrid grid = cast_visibility(planes, options.visibility);
-    out = robust_segments(planes, grid, options);
+  SegmentOptions ruled = options;
+  ruled.visibility.is_party_wall_rule = options.rules.has(Rule::kPartyWalls);
+  if (!options.rules.has(Rule::kWideOutlines)) ruled.visibility.border_ratio = 0;
+  if (options.rules.has(Rule::kAlcoves)) {
+    const HitGrid grid = cast_visibility(planes, ruled.visibility);
+    out = robust_segments(planes, grid, ruled);
     out.rays = grid.rays, out.visibility_seconds = grid.seconds;
+  } else {
+    out = paper_segments(planes, ruled);
   }
   out.aggregation_seconds = std::max(0.0, seconds_since(start) - out.visibility_seconds);
   return out;

@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "core/element_kind.h"
+#include "core/rules.h"
 #include "planes/planes.h"
 #include "visibility/visibility.h"
 
 namespace colod {
 
 struct SegmentOptions {
-  bool is_paper = false;    ///< Algorithm 1, hSum rule and plane → most hits, to the letter
-  double alcove_area = 80;  ///< A_eps, m²
-  VisibilityOptions visibility;
+  RuleSet rules = RuleSet::all();  ///< none: Algorithm 1, hSum rule and plane → most hits
+  double alcove_area = 80;         ///< A_eps, m²
+  VisibilityOptions visibility;    ///< what the rules decide of it is not read
 };
 
 struct Segment {

@@ -111,6 +111,8 @@ struct Store::Impl {
   bool has_row(const char* sql, const std::string& name) const;
   /// All tables, views and triggers as they were made.
   std::vector<std::string> schema() const;
+  /// Whether it was segmented by the rules, and their numbers, of this colod.
+  bool has_these_rules() const;
   /// Throws Error{kInput} where they are not a scene file's own.
   void check_schema() const;
 

@@ -10,6 +10,7 @@
 #include <sqlite3.h>
 
 #include "parts.h"
+#include "rules/rules.h"
 
 namespace colod {
 namespace {
@@ -40,11 +41,20 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
 )sql";
 
 Json options_json(const Options& o) {
-  Json json{{"rules", o.rules == Rules::kPaper ? "paper" : "robust"},
+  Json json{{"rules", o.rules.is_none() ? "paper" : "robust"},
             {"visibility", name_of(o.visibility)},
             {"layering", o.is_size_layering ? "size" : "spectral"}};
+  if (!o.rules.is_none() && !o.rules.is_all()) json["without"] = ids_off(o.rules);
   for (const OptionInfo& info : option_table()) json[info.name] = info.get(o);
   return json;
+}
+
+RuleSet rules_of(const Json& json, const std::string& path) {
+  if (json.value("rules", "robust") == "paper") return RuleSet::none();
+  RuleSet rules = RuleSet::all();
+  for (const std::string& id : json.value("without", std::vector<std::string>{}))
+    rules = rules.without(rule_named(id, path));
+  return rules;
 }
 
 /// FNV-1a, 64 bits, of any bytes; two lanes make accidental equality as unlikely as needed for "did
@@ -155,14 +165,32 @@ Store::Store(Store&&) noexcept = default;
 void Store::put_options(const Options& options) {
   const std::string text = options_json(options).dump();
   Statement old = impl_->read("SELECT value FROM meta WHERE key = 'options'");
-  const bool is_there = old.step();
-  if (is_there && old.text() == text) return;
+  const bool is_there = old.step(), has_same_rules = impl_->has_these_rules();
+  if (is_there && old.text() == text && has_same_rules) return;
+  const auto outdates_meshes = [&] {
+    if (!has_same_rules) return true;
+    const Options before = this->options();
+    return before.layers != options.layers || !(before.rules == options.rules);
+  };
   impl_->transaction([&] {
-    if (is_there && this->options().layers != options.layers)
+    if (is_there && outdates_meshes())
       impl_->execute("DELETE FROM layer; UPDATE segment SET layer = NULL", Stage::kOutput);
     impl_->execute("DELETE FROM meta WHERE key = 'coanalysis'", Stage::kOutput);
     impl_->write("INSERT OR REPLACE INTO meta VALUES('options', ?1)").bind(text).run();
+    impl_->write("INSERT OR REPLACE INTO meta VALUES('rules', ?1)").bind(rules_version()).run();
   });
+}
+
+bool Store::Impl::has_these_rules() const {
+  Statement s = read("SELECT value FROM meta WHERE key = 'rules'");
+  return s.step() && s.text() == rules_version();
+}
+
+void Store::check_rules() const {
+  if (!impl_->has_these_rules())
+    throw Error(Stage::kInput, impl_->path,
+                "was segmented by a colod with other rules, or other numbers in them: run colod "
+                "segment again");
 }
 
 Options Store::options() const {
@@ -171,7 +199,7 @@ Options Store::options() const {
     throw Error(Stage::kInput, impl_->path, "holds no options: colod segment has not finished");
   Options options;
   read_json(s.text(), impl_->path, "options", [&](const Json& json) {
-    options.rules = json.value("rules", "robust") == "paper" ? Rules::kPaper : Rules::kRobust;
+    options.rules = rules_of(json, impl_->path);
     options.visibility = visibility_of(json.value("visibility", "embree"));
     options.is_size_layering = json.value("layering", "spectral") == "size";
     for (const OptionInfo& info : option_table()) {
@@ -369,7 +397,9 @@ std::string segments_key(const Source& source, const Options& options) {
   relevant.eta = defaults.eta;
   relevant.gap = defaults.gap;
   relevant.is_size_layering = defaults.is_size_layering;
-  const std::string text = options_json(relevant).dump();
+  for (const RuleInfo& info : rule_table())
+    if (info.rule > kLastOfSegments) relevant.rules = relevant.rules.with(info.rule);
+  const std::string text = rules_version() + options_json(relevant).dump();
   hash.add(text.data(), text.size());
   return hash.hex();
 }

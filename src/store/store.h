@@ -24,9 +24,13 @@ class Store {
   ~Store();
   Store(Store&&) noexcept;
 
-  /// Other options outdate the analysis, another number of layers the meshes too: they go away.
+  /// Other options outdate the analysis, another number of layers, other rules or a colod with
+  /// other ones the meshes too: they go away.
   void put_options(const Options& options);
   Options options() const;
+  /// Throws Error{kInput} when it was segmented by a colod whose rules, or their numbers, were
+  /// others: what it holds is not what this one would make.
+  void check_rules() const;
 
   /// Names of all buildings, in the order of the input.
   std::vector<std::string> names() const;
@@ -78,8 +82,8 @@ class TemporaryStore : public Depot {
   Store store_;
 };
 
-/// A key for Store::put_segments: a hash of the source's content and of the options that rooms 2 to
-/// 5 depend on.
+/// A key for Store::put_segments: a hash of the source's content, of the options and rules that
+/// rooms up to `segments` depend on, and of this colod's own rules and their numbers.
 std::string segments_key(const Source& source, const Options& options);
 
 }  // namespace colod

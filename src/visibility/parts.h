@@ -8,13 +8,15 @@
 #include <memory>
 #include <vector>
 
+#include "parameters.h"
 #include "visibility.h"
 
 namespace colod::casting {
 
+using namespace parameters::visibility;
+
 /// What a voxel's counts make of it.
-struct Rule {
-  static constexpr double kPartyInside = 0.35, kPartyOutside = 0.02;
+struct VoxelRule {
   int nr = 0;
   bool is_party = true;
 
@@ -53,7 +55,7 @@ struct Job {
   Soup soup;
   Vec3 center = Vec3::Zero();                 ///< of the grid's box
   std::vector<std::array<double, 2>> normal;  ///< of each plane, its horizontal part, turned
-  Rule rule{};
+  VoxelRule rule{};
   bool is_stopping = true;
 };
 /// The arguments of cast_visibility; `box` of the grid.

@@ -21,10 +21,13 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "parameters.h"
 #include "parts.h"
 
 namespace colod {
 namespace {
+
+using namespace parameters::visibility;
 
 /// Of the box's size, before its lower and behind its upper corner.
 constexpr double kGrowLow = 1e-4 * std::numbers::sqrt2, kGrowHigh = 1e-4 * std::numbers::phi;
@@ -72,7 +75,6 @@ std::vector<Vec3> widened(const Plane& plane, double width) {
     const Vec3 out = (vertices[b] - vertices[a]).cross(plane.normal).normalized();
     outward[a] += out, outward[b] += out;
   }
-  constexpr double kSharpest = 0.5;  // corners sharper than some 40° move by less
   for (std::size_t i = 0; i < vertices.size(); ++i)
     vertices[i] += 2 * width / std::max(outward[i].squaredNorm(), kSharpest) * outward[i];
   return vertices;
@@ -184,8 +186,7 @@ Job make_job(const Planes& planes, const VisibilityOptions& options,
   job.center = box.center();
   job.rule = {options.nr, options.is_party_wall_rule};
   job.is_stopping = options.early_stop;
-  const double border =
-      options.is_party_wall_rule ? std::max(0.0, options.border_ratio * planes.distance) : 0;
+  const double border = std::max(0.0, options.border_ratio * planes.distance);
   const std::vector<std::vector<Vec3>> outlines =
       cast_outlines(planes, is_active, border, job.center, 0.5 * box.diagonal());
   for (std::size_t p = 0; p < planes.planes.size(); ++p) {

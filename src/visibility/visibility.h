@@ -12,6 +12,7 @@
 
 #include "core/geometry.h"
 #include "core/options.h"
+#include "parameters.h"
 #include "planes/planes.h"
 
 namespace colod {
@@ -24,11 +25,11 @@ struct VisibilityOptions {
   /// wall rule) nor an alcove candidate (≥ n_r/2 outside hits). Its hits are then dropped: the
   /// result is the same for every consumer.
   bool early_stop = true;
-  bool is_party_wall_rule =
-      true;  ///< robust: a voxel with ≥ 0.35 n_r inside and ≤ 0.02 n_r outside hits is valid too
-  /// Robust, with `is_party_wall_rule` only: for the rays, outlines are wider by this many times
-  /// Planes::distance on every side, so that few rays escape through cracks between neighbours.
-  double border_ratio = 1.5;
+  bool is_party_wall_rule = true;  ///< Rule::kPartyWalls: a voxel with ≥ 0.35 n_r inside and
+                                   ///< ≤ 0.02 n_r outside hits is valid too
+  /// Rule::kWideOutlines: for the rays, outlines are wider by this many times Planes::distance on
+  /// every side, so that few rays escape through cracks between neighbours; 0: as they are.
+  double border_ratio = parameters::visibility::kBorderRatio;
 };
 
 /// One plane seen from one voxel.

@@ -97,8 +97,9 @@ TEST_CASE("kinds that differ are told apart and ordered by size") {
   for (const bool is_paper : {false, true})
     for (const int count : {2, 3, 4}) {
       const auto segments = kinds(count, 7);
-      const Clustering c =
-          cluster_segments(segments, {.is_paper = is_paper, .layers = count + 1, .eta = 20});
+      const Clustering c = cluster_segments(
+          segments,
+          {.rules = is_paper ? RuleSet::none() : RuleSet::all(), .layers = count + 1, .eta = 20});
       for (std::size_t i = 0; i < segments.size(); ++i)
         CHECK(c.layer[i] == 1 + static_cast<int>(i) % count);
       CHECK(c.warnings.empty());
@@ -191,7 +192,7 @@ TEST_CASE("none, one, fewer than clusters, identical, flat only, no extent") {
   nothing.is_flat = true;
   CHECK(cluster_segments({nothing, nothing, nothing}).layer == std::vector<int>{2, 2, 2});
   nothing.eigenvalues[0] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(cluster_segments({nothing, big, small}, {.is_paper = true}).layer.size() == 3);
+  CHECK(cluster_segments({nothing, big, small}, {.rules = RuleSet::none()}).layer.size() == 3);
 }
 
 TEST_CASE("layers stay within 1 and l_n − 1, whatever the numbers") {
@@ -202,7 +203,8 @@ TEST_CASE("layers stay within 1 and l_n − 1, whatever the numbers") {
       segments.push_back(of_kind(static_cast<int>(random() % 8), 0.1 + random() % 5, random, 1));
       segments.back().is_flat = random() % 3 == 0;
     }
-    const ClusteringOptions options{.is_paper = trial % 2 == 0, .layers = 2 + trial % 4};
+    const ClusteringOptions options{.rules = trial % 2 == 0 ? RuleSet::none() : RuleSet::all(),
+                                    .layers = 2 + trial % 4};
     for (const int layer : cluster_segments(segments, options).layer) {
       CHECK(layer >= 1);
       CHECK(layer < options.layers);
@@ -264,7 +266,9 @@ TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
   for (const double area : {1.5, 0.5}) add(area, 1);
   for (const double area : {2.5, 1.9}) add(area, -1);
   const std::vector<int> layer{0, 1};
-  const auto at = [&](int k) { return layer_planes(planes, segments, layer, k, {false, 3}); };
+  const auto at = [&](int k) {
+    return layer_planes(planes, segments, layer, k, {RuleSet::all(), 3});
+  };
   CHECK(at(0).size() == 6);  // so few that none has to
   for (int i = 0; i < 9; ++i) add(60, 0);
   const auto at_large = [&](int k) {
@@ -277,7 +281,7 @@ TEST_CASE("robust: the smallest planes of layer 0 wait for the finest layer") {
   CHECK(at_large(1) == std::vector<int>{0, 1, 4, 5, 6});
   CHECK(at_large(2).size() == 8);
   CHECK(layer_planes(planes, segments, layer, 0).size() == 6 + 9);  // the paper's
-  CHECK(layer_planes(planes, segments, {0, 0}, 0, {false, 1}).size() == 8 + 9);
+  CHECK(layer_planes(planes, segments, {0, 0}, 0, {RuleSet::all(), 1}).size() == 8 + 9);
   add(10, 0);  // small enough with the others, but not by itself
   CHECK(at(0).back() == 17);
 }
@@ -321,7 +325,7 @@ TEST_CASE("the planes of a layer are among those of the next") {
       }
     }
     for (int k = 0; k < 6; ++k) {
-      const LayerPlanesOptions options{k < 3, 4};
+      const LayerPlanesOptions options{k < 3 ? RuleSet::none() : RuleSet::all(), 4};
       const auto a = layer_planes(planes, segments, layer, k % 3, options);
       const auto b = layer_planes(planes, segments, layer, k % 3 + 1, options);
       CHECK(std::is_sorted(a.begin(), a.end()));

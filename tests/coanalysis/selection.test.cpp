@@ -42,10 +42,10 @@ double plain_objective(const std::vector<SelectionBuilding>& buildings, const Ch
             best =
                 std::max(best, segment_similarity(b.segments[s], buildings[j].segments[t], o.eta));
         const double others = static_cast<double>(buildings.size()) - 1;
-        fco += o.is_paper ? best : best * b.segments[s].area / area / std::max(1.0, others);
+        fco += o.rules.is_none() ? best : best * b.segments[s].area / area / std::max(1.0, others);
       }
     }
-    if (fr <= (o.is_paper ? 0.8 : 0.95)) return -std::numeric_limits<double>::infinity();
+    if (fr <= (o.rules.is_none() ? 0.8 : 0.95)) return -std::numeric_limits<double>::infinity();
     e += fr - o.beta * kept_area / area + o.lambda * fco;
   }
   return e;
@@ -69,7 +69,7 @@ double enumerated_optimum(const std::vector<SelectionBuilding>& buildings,
 
 SelectionOptions rules(bool is_paper, int exact_segments) {
   SelectionOptions o;
-  o.is_paper = is_paper, o.exact_segments = exact_segments;
+  o.rules = is_paper ? RuleSet::none() : RuleSet::all(), o.exact_segments = exact_segments;
   return o;
 }
 

@@ -18,8 +18,8 @@ TEST_CASE("the paper's defaults stand in the table and are valid") {
 }
 
 TEST_CASE("the paper's rules bring the paper's n_s") {
-  CHECK(default_options(Rules::kPaper).ns == 150);
-  CHECK(default_options(Rules::kRobust).ns == Options{}.ns);
+  CHECK(default_options(RuleSet::none()).ns == 150);
+  CHECK(default_options(RuleSet::all()).ns == Options{}.ns);
 }
 
 TEST_CASE("NaN and values out of range are refused by name") {

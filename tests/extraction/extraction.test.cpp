@@ -221,7 +221,7 @@ TEST_CASE("a chimney leaves a hole in the roof's facet") {
 }
 
 TEST_CASE("paper rules close what is closed") {
-  const Extraction e = extract(gable_house(10, 6, 4, 3), {.is_paper = true});
+  const Extraction e = extract(gable_house(10, 6, 4, 3), {.rules = RuleSet::none()});
   expect_solid(e.mesh, 330);
   CHECK(e.mesh.vertices.size() == 10);
 }

@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   source.name = "soup";
   source.mesh = soup(data + 1, size - 1, (data[0] % 8) * 0.1);
   Options options;
-  options.rules = data[0] & 8 ? Rules::kPaper : Rules::kRobust;
+  options.rules = data[0] & 8 ? RuleSet::none() : RuleSet::all();
   options.visibility = data[0] & 16 ? Visibility::kSweep : Visibility::kEmbree;
   options.ns = 8, options.nr = 8, options.min_points = 1;
   const Building b = segment_building({std::move(source), 0, {}}, options);
@@ -50,9 +50,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Extraction result =
         extract_layer(b.planes, planes, sight,
-                      {.is_paper = options.rules == Rules::kPaper,
+                      {.rules = options.rules,
                        .nr = 8,
-                       .tolerance = options.rules == Rules::kRobust && data[0] & 32 ? 0.2 : 0});
+                       .tolerance = options.rules.is_all() && data[0] & 32 ? 0.2 : 0});
     if (!check_validity(result.mesh.mesh()).is_watertight) std::abort();
   } catch (const Error&) {
   }

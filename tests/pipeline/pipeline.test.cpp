@@ -140,7 +140,7 @@ TEST_CASE("stacked boxes keep their ground floor, on every layer") {
 
 TEST_CASE("the paper's rules run through the same rooms") {
   Options options = small_options();
-  options.rules = Rules::kPaper;
+  options.rules = RuleSet::none();
   options.min_points = 1;  // the paper counts points of a scan; these walls have two faces
   for (const Building& b : build({house("a"), house("b", 14, 8)}, options).buildings)
     CHECK(b.layers.size() == 3);

@@ -191,12 +191,12 @@ TEST_CASE("a cloud of a box gives six planes of about its areas") {
 }
 
 TEST_CASE("to the letter: CGAL's growing finds the planes of a finely meshed corner") {
-  const Planes p = detect_planes(as_source(noisy_corner(6, 4, 0.02)), {.is_paper = true});
+  const Planes p = detect_planes(as_source(noisy_corner(6, 4, 0.02)), {.rules = RuleSet::none()});
   CHECK(p.distance == 0.2);
   CHECK(p.planes.size() >= 2);
   CHECK(p.planes[1].area > 20);
-  CHECK_THROWS_AS(detect_planes(as_source(box_mesh({0, 0, 0}, {1, 1, 1})), {.is_paper = true}),
-                  Error);
+  CHECK_THROWS_AS(
+      detect_planes(as_source(box_mesh({0, 0, 0}, {1, 1, 1})), {.rules = RuleSet::none()}), Error);
 }
 
 TEST_CASE("walls three centimetres apart are one plane, twenty are two; of few planes all stay") {
@@ -244,7 +244,7 @@ TEST_CASE("a tilted part that a wall passes through the middle of is that wall")
       r.items.push_back(f), r.area += items.area[f], r.moments.add_item(items, f);
     }
     for (regions::Region& r : found) r.normal = {0, -1, 0}, r.refit();
-    regions::regularize(items, 0.1, {0.03, 0.03}, found);
+    regions::regularize(items, 0.1, {0.03, 0.03, 0, true}, RuleSet::all(), found);
     CHECK(found.size() == (from > 10 ? 1 : 2));
   }
 }

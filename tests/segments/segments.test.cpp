@@ -20,7 +20,7 @@ namespace {
 
 SegmentOptions coarse(bool is_paper = false, int ns = 32) {
   SegmentOptions options;
-  options.is_paper = is_paper;
+  options.rules = is_paper ? RuleSet::none() : RuleSet::all();
   options.visibility.ns = ns;
   options.visibility.nr = 72;
   return options;
@@ -51,9 +51,8 @@ void check_invariants(const Planes& planes, const Segments& s) {
   REQUIRE(of_plane == s.segment_of_plane);
   double sum = 0;
   for (const Coverage& c : s.coverage) {
-    REQUIRE(!c.segments.empty());
     REQUIRE(std::is_sorted(c.segments.begin(), c.segments.end()));
-    REQUIRE(c.segments.back() < static_cast<int>(s.segments.size()));
+    REQUIRE((c.segments.empty() || c.segments.back() < static_cast<int>(s.segments.size())));
     REQUIRE(c.share > 0);
     sum += c.share;
   }
@@ -328,16 +327,4 @@ TEST_CASE("coverage counts voxels of two grids by who encloses them") {
   REQUIRE(coverage[1].share == 1);
   REQUIRE(coverage[2].segments == std::vector<int>{1});
   REQUIRE(coverage[2].share == 7);
-}
-
-TEST_CASE("what stands a tenth of the diagonal above all larger segments is a spire") {
-  for (const double height : {6.0, 1.0}) {
-    Planes planes = detect_planes(
-        as_source(join(box_mesh({0, 0, 0}, {10, 8, 7}), box_mesh({2, 2, 7}, {5, 5, 7 + height}))));
-    const Segments s = build_segments(planes, coarse());
-    const auto spires = std::count_if(s.segments.begin(), s.segments.end(),
-                                      [](const Segment& g) { return g.kind == ElementKind::kSpire; });
-    CHECK(spires == (height > 2 ? 1 : 0));
-    CHECK(s.segments[0].kind == ElementKind::kPlain);
-  }
 }

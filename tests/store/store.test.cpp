@@ -90,6 +90,44 @@ TEST_CASE("the key follows content and the options that segments depend on, and 
   other = options;
   other.beta = 0.7;
   CHECK(key == segments_key(house("a", 12), other));
+  other = options;
+  other.rules = options.rules.without(Rule::kVolume);
+  CHECK(key == segments_key(house("a", 12), other));
+  other.rules = options.rules.without(Rule::kFloaters);
+  CHECK(key != segments_key(house("a", 12), other));
+}
+
+TEST_CASE("other rules, and a colod with other ones, throw the meshes away") {
+  TemporaryFile file;
+  Options options = small_options();
+  Scene scene = build_scene({{house("a", 12)}, {}}, options);
+  const auto put = [&](Store& store) {
+    store.put_segments(scene.buildings[0], 0, "key");
+    store.put_layers_of_segments(scene.buildings[0]);
+    store.put_meshes(scene.buildings[0]);
+  };
+  {
+    Store store(file.path, true);
+    store.put_options(options);
+    put(store);
+    store.put_options(options);
+    CHECK(store.has_meshes("a"));
+    options.rules = options.rules.without(Rule::kVolume);
+    store.put_options(options);
+    CHECK(!store.has_meshes("a"));
+    CHECK(store.options().rules == options.rules);
+    CHECK_NOTHROW(store.check_rules());
+    put(store);
+  }
+  sqlite3* db = nullptr;
+  REQUIRE(sqlite3_open(file.path.c_str(), &db) == SQLITE_OK);
+  sqlite3_exec(db, "UPDATE meta SET value = 'an older colod' WHERE key = 'rules'", nullptr, nullptr,
+               nullptr);
+  sqlite3_close(db);
+  Store store(file.path, false);
+  CHECK_THROWS_WITH(store.check_rules(), Catch::Contains("colod segment"));
+  store.put_options(options);
+  CHECK(!store.has_meshes("a"));
 }
 
 TEST_CASE("changed layers throw the meshes away, unchanged ones keep them") {

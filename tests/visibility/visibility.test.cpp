@@ -182,7 +182,7 @@ TEST_CASE(
   planes.distance = 0.04;
   VisibilityOptions o = small(9, 200);
   const HitGrid closed = cast_visibility(planes, o);
-  o.is_party_wall_rule = false;
+  o.border_ratio = 0;
   const HitGrid open = cast_visibility(planes, o);
   const auto is_inner = [](const Vec3& c) {
     return (c.array() > 0.1).all() && (c.head<2>().array() < 7.9).all() && c.z() < 5.9;
