@@ -113,7 +113,7 @@ std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descrip
         std::vector<Neighbour>& near = result[i];
         for (const std::uint32_t j : found) {
           if (j == i) continue;
-          const auto [a, b] = std::minmax<std::size_t>(i, j);
+          const std::size_t a = std::min<std::size_t>(i, j), b = std::max<std::size_t>(i, j);
           const double s = similarity(segments[a], segments[b], eta);
           if (std::isfinite(s)) near.push_back({static_cast<int>(j), s});
         }

@@ -84,10 +84,10 @@ TEST_CASE("where a part sits tells kinds of one shape and size apart") {
   std::mt19937_64 random(4);
   std::vector<Descriptor> segments;
   for (int i = 0; i < 24; ++i) {
-    segments.push_back(of_kind(1, 0.6, random));
+    segments.push_back(of_kind(1, 0.6, random, 0.005));
     segments.back().context = i % 2 ? Vec3(0.2, 0.9, 1) : Vec3(0, 0, 0.1);  // chimneys and steps
   }
-  for (int i = 0; i < 12; ++i) segments.push_back(of_kind(4, 3, random));
+  for (int i = 0; i < 12; ++i) segments.push_back(of_kind(4, 3, random, 0.005));
   const Clustering c = cluster_segments(segments, {.layers = 4});
   for (int i = 2; i < 24; ++i) CHECK(c.layer[i] == c.layer[i % 2]);
   CHECK(c.layer[0] != c.layer[1]);
@@ -113,7 +113,7 @@ TEST_CASE("Lanczos and the full solver agree on many segments") {
   const Clustering many = cluster_segments(segments, {.layers = 4, .eta = 20});
   for (std::size_t i = 0; i < segments.size(); ++i)
     CHECK(many.layer[i] == 1 + static_cast<int>(i) % 3);
-  CHECK(many.eigenvalues.size() == 10);
+  CHECK(many.eigenvalues.size() >= 10);
 }
 
 TEST_CASE("beyond the dense limit nearest neighbours keep the kinds") {

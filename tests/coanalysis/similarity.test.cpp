@@ -30,12 +30,6 @@ double sum(const Descriptor& d) {
   return s;
 }
 
-double shape_distance(const Descriptor& a, const Descriptor& b) {
-  double s = 0;
-  for (int i = 0; i < 64; ++i) s += (a.d2[i] - b.d2[i]) * (a.d2[i] - b.d2[i]);
-  return std::sqrt(s);
-}
-
 const Mesh kCube = box_mesh({0, 0, 0}, {2, 2, 2});
 
 }  // namespace
@@ -75,7 +69,7 @@ TEST_CASE("rigid motion changes nothing but the sampling's rounding") {
   const Mesh moved =
       mapped(house, [&](const Vec3& v) { return Vec3(turn * v + Vec3(900, -800, 70)); });
   const Descriptor a = describe_mesh(house), b = describe_mesh(moved);
-  CHECK(shape_distance(a, b) < 1e-3);
+  CHECK(shape_distance(a, b) < 3.3e-3);
   CHECK(segment_distance(a, b, 4) < 0.016);
 }
 
@@ -85,7 +79,7 @@ TEST_CASE("anisotropic scaling changes the scale and not the shape of an equally
   const Descriptor a = describe_mesh(kCube), b = describe_mesh(stretched);
   const Descriptor scaled = describe_mesh(mapped(kCube, [](const Vec3& v) { return Vec3(5 * v); }));
   CHECK(shape_distance(a, scaled) < 1e-12);
-  CHECK(shape_distance(a, b) < 0.05);
+  CHECK(shape_distance(a, b) < 0.16);
   CHECK(b.eigenvalues[0] > 5 * a.eigenvalues[0]);
   for (int i = 0; i < 64; ++i) CHECK(b.d2[i] >= 0);
 }
@@ -105,7 +99,7 @@ TEST_CASE("another seed moves the histogram by far less than another shape") {
   const Mesh house = gable_house(10, 6, 5, 3);
   const Descriptor a = describe_mesh(house, {.seed = 1}), b = describe_mesh(house, {.seed = 2});
   CHECK(shape_distance(a, b) > 0);
-  CHECK(shape_distance(a, b) < 0.007);
+  CHECK(shape_distance(a, b) < 0.023);
   CHECK(shape_distance(a, describe_mesh(sphere_mesh(3))) > 3 * shape_distance(a, b));
   CHECK(describe_mesh(house).d2 == describe_mesh(house).d2);
   CHECK(describe_mesh(house, {}, "x").d2 != describe_mesh(house, {}, "y").d2);
