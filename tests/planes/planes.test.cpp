@@ -232,7 +232,7 @@ TEST_CASE("a tilted part that a wall passes through the middle of is that wall")
       r.items.push_back(f), r.area += items.area[f], r.moments.add_item(items, f);
     }
     for (regions::Region& r : found) r.normal = {0, -1, 0}, r.refit();
-    regions::regularize(items, 0.1, {0.03, 0.03}, found);
+    regions::regularize(items, 0.1, {0.03, 0.03, 0}, found);
     CHECK(found.size() == (from > 10 ? 1 : 2));
   }
 }
