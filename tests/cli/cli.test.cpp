@@ -309,7 +309,7 @@ TEST_CASE(
   for (const std::string option :
        {"ns", "nr", "layers", "alcove-area", "beta", "lambda", "eta", "gap", "distance", "angle",
         "min-points", "seed", "quantization", "target-sse", "visual-error", "pixel-error",
-        "switch-share", "threads"})
+        "switch-share", "input-memory", "threads"})
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "x", "''"}) {
       INFO(option << " " << value);
       const Result result = f.colod(build + "--" + option + "=" + value);
