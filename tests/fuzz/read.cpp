@@ -1,5 +1,5 @@
 // Any bytes as a file of any format: an Error or valid sources, never a crash.
-//   fuzz_read CORPUS -max_len=4096        the first byte of an input chooses the format
+//   fuzz_read CORPUS -max_len=8192        the first byte of an input chooses the format
 #include "read/read.h"
 
 #include <unistd.h>
