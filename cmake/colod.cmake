@@ -69,6 +69,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_G
    AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(colod_flags INTERFACE -Wno-restrict -Wno-array-bounds)
 endif()
+# Pragmas name warnings that GCC alone has.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  target_compile_options(colod_flags INTERFACE -Wno-unknown-warning-option)
+endif()
 if(COLOD_SANITIZE)
   list(JOIN COLOD_SANITIZE "," sanitizers)
   # A find ends the program, as a test that only prints it would pass.
