@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli.h"
+#include "numbers.h"
 #include "read/read.h"
 
 namespace colod::cli {
@@ -31,7 +32,7 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
          "--input-memory", read.input_memory,
          "MiB that one file may take, with those that it names, checked before they are read; "
          "default 2048")
-      ->check(CLI::Range(1.0, 4095.0));
+      ->check(number_between(1.0, 4095.0));
   app.add_option_function<std::string>(
          "--split",
          [&read](const std::string& v) {

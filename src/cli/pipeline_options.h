@@ -144,7 +144,10 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
     std::ostringstream help;
     help << info.help << (info.unit.empty() ? "" : " [" + info.unit + "]") << ", default "
          << info.get(Options{});
-    app.add_option_function<double>("--" + info.name, set, help.str());
+    std::ostringstream range;
+    range << (info.is_integer ? "whole number" : "number") << " from " << info.min << " to "
+          << info.max;
+    app.add_option_function<double>("--" + info.name, set, help.str())->type_name(range.str());
   }
 }
 

@@ -44,7 +44,10 @@ std::vector<Region> grow_on_mesh(const Items& items, const PlaneOptions& options
     std::array<SurfaceMesh::Vertex_index, 3> v;
     for (int k = 0; k < 3; ++k) v[k] = SurfaceMesh::Vertex_index(source.faces[i][k]);
     if (mesh.add_face(v[0], v[1], v[2]) == SurfaceMesh::null_face()) {
-      for (int k = 0; k < 3; ++k) v[k] = mesh.add_vertex(mesh.point(v[k]));
+      for (SurfaceMesh::Vertex_index& corner : v) {
+        const Kernel::Point_3 place = mesh.point(corner);  // a copy: adding may move all points
+        corner = mesh.add_vertex(place);
+      }
       mesh.add_face(v[0], v[1], v[2]);
     }
     item_of.push_back(i);

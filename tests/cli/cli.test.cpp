@@ -182,7 +182,7 @@ TEST_CASE("threads and stages do not change a byte, and a stage goes on where it
   CHECK(is_same(f / "one", f / "two"));
   REQUIRE(f.colod("segment " + in + small + "-o " + scene).exit_code == 0);
   REQUIRE(f.colod("analyze " + scene).exit_code == 0);
-  std::system(
+  [[maybe_unused]] const int killed = std::system(
       ("timeout -s KILL 0.3 " COLOD_BINARY " mesh --threads 1 " + scene + " 2>&1 | cat >/dev/null")
           .c_str());
   REQUIRE(f.colod("mesh --quiet " + scene).exit_code == 0);
@@ -198,9 +198,10 @@ TEST_CASE("an interrupted run leaves whole files only") {
   REQUIRE(f.colod("analyze " + scene).exit_code == 0);
   REQUIRE(f.colod("mesh " + scene).exit_code == 0);
   for (int i = 1; i <= 10; ++i)
-    std::system(("timeout -s INT 0.0" + std::to_string(10 + 2 * i) + " " COLOD_BINARY " export " +
-                 scene + " --quiet --format glb,3dtiles,obj,ply -o " + (f / "out").string())
-                    .c_str());
+    [[maybe_unused]] const int status = std::system(
+        ("timeout -s INT 0.0" + std::to_string(10 + 2 * i) + " " COLOD_BINARY " export " + scene +
+         " --quiet --format glb,3dtiles,obj,ply -o " + (f / "out").string())
+            .c_str());
   if (!fs::exists(f / "out")) return;  // a slow machine
   for (const auto& entry : fs::recursive_directory_iterator(f / "out"))
     CHECK(entry.path().string().find(".tmp") == std::string::npos);
@@ -308,7 +309,7 @@ TEST_CASE(
   for (const std::string option :
        {"ns", "nr", "layers", "alcove-area", "beta", "lambda", "eta", "gap", "distance", "angle",
         "min-points", "seed", "quantization", "target-sse", "visual-error", "pixel-error",
-        "switch-share", "threads"})
+        "switch-share", "input-memory", "threads"})
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "x", "''"}) {
       INFO(option << " " << value);
       const Result result = f.colod(build + "--" + option + "=" + value);

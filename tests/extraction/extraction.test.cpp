@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "extraction_helpers.h"
 #include "meshes.h"
+#include "shared_data.h"
 
 using namespace colod;
 using namespace colod::test;
@@ -188,11 +189,8 @@ TEST_CASE("a layer of few planes still gives a body") {
 }
 
 TEST_CASE("simple block models are closed with their own volume") {
-  const std::filesystem::path folder = COLOD_SOURCE_DIR "/../shared/data/delft";
-  if (!std::filesystem::exists(folder)) {
-    WARN("skipped: the data folder is not there");
-    return;
-  }
+  const std::filesystem::path folder = test::shared_data() / "delft";
+  COLOD_SKIP_WITHOUT(folder);
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".obj") continue;

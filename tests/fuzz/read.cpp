@@ -1,5 +1,5 @@
 // Any bytes as a file of any format: an Error or valid sources, never a crash.
-//   fuzz_read CORPUS -max_len=4096        the first byte of an input chooses the format
+//   fuzz_read CORPUS -max_len=8192        the first byte of an input chooses the format
 #include "read/read.h"
 
 #include <unistd.h>
@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "core/error.h"
@@ -32,7 +33,8 @@ void check(const colod::Source& source) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string path =
-      "/tmp/colod-fuzz-" + std::to_string(getpid()) + kSuffixes[data[0] % kSuffixes.size()];
+      std::filesystem::temp_directory_path() /
+      ("colod-fuzz-" + std::to_string(getpid()) + kSuffixes[data[0] % kSuffixes.size()]);
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   try {

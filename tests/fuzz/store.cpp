@@ -4,13 +4,15 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "core/error.h"
 #include "publish/publish.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string path = "/tmp/colod-fuzz-" + std::to_string(getpid()) + ".colod";
+  const std::string path = std::filesystem::temp_directory_path() /
+                           ("colod-fuzz-" + std::to_string(getpid()) + ".colod");
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {

@@ -14,6 +14,7 @@
 #include "meshes.h"
 #include "publish/publish.h"
 #include "publish/report.h"
+#include "shared_data.h"
 #include "synth/synth.h"
 
 using namespace colod;
@@ -253,14 +254,19 @@ TEST_CASE("a procedural neighbourhood, clean and scanned, becomes watertight lay
   }
 }
 
+TEST_CASE("the scan of assets becomes watertight layers near to it") {
+  const Scene scene = build(read_sources({COLOD_SOURCE_DIR "/assets/scan/house_00.ply"}).sources);
+  REQUIRE(scene.buildings.size() == 1);
+  const Building& b = scene.buildings[0];
+  check_chain(b, 3);
+  CHECK(b.layers[2].distances.mean_a_to_b < 0.006 * b.planes.box.diagonal());
+}
+
 TEST_CASE("real photogrammetry and airborne points become watertight layers") {
-  const std::string data = COLOD_SOURCE_DIR "/../shared/data/";
-  const std::vector<std::string> files = {data + "mvs/house_a.obj", data + "mvs/arc.off",
-                                          data + "als/block-a/16722.ply"};
-  if (!std::filesystem::exists(files[0])) {
-    WARN("skipped: the shared data are not here");
-    return;
-  }
+  const std::filesystem::path data = test::shared_data();
+  COLOD_SKIP_WITHOUT(data);
+  const std::vector<std::string> files = {data / "mvs/house_a.obj", data / "mvs/arc.off",
+                                          data / "als/block-a/16722.ply"};
   const Scene scene = build(read_sources(files).sources);
   REQUIRE(scene.buildings.size() == 3);
   for (const Building& b : scene.buildings) check_chain(b, 3);

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "read_helpers.h"
+#include "shared_data.h"
 
 using namespace colod;
 using namespace colod::test;
@@ -354,12 +355,17 @@ TEST_CASE("no truncation and no flipped byte crashes a reader") {
     }
 }
 
+TEST_CASE("the scan of assets reads as its description says") {
+  const Source scan = read_single(COLOD_SOURCE_DIR "/assets/scan/house_00.ply");
+  CHECK(scan.mesh.vertices.size() == 5734);
+  CHECK(scan.mesh.faces.size() == 11054);
+  CHECK(scan.face_object.size() == scan.mesh.faces.size());
+  CHECK(*std::max_element(scan.face_object.begin(), scan.face_object.end()) > 0);
+}
+
 TEST_CASE("the shared data read as their descriptions say") {
-  const std::filesystem::path data = COLOD_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::exists(data)) {
-    WARN("skipped: the shared data are not here");
-    return;
-  }
+  const std::filesystem::path data = test::shared_data();
+  COLOD_SKIP_WITHOUT(data);
   const ReadResult street = read_sources({(data / "ingolstadt-north").string()});
   CHECK(street.failures.empty());
   CHECK(street.sources.size() == 15);
