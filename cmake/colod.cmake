@@ -6,6 +6,12 @@ function(colod_room name)
   add_library(colod_${name} STATIC ${sources})
   target_include_directories(colod_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
   target_link_libraries(colod_${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE} colod_flags)
+  colod_part(colod_${name})
+endfunction()
+
+# A static library that the shared one is made of: it can be moved, and shows nothing of itself.
+function(colod_part target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
 # A page as a C++ text: `colod_page(out header symbol page.html style.css script.js...)` makes a source that defines `symbol`
