@@ -29,6 +29,12 @@ function(colod_room name)
   else()
     target_precompile_headers(colod_${name} REUSE_FROM colod_precompiled)
   endif()
+  colod_part(colod_${name})
+endfunction()
+
+# A static library that the shared one is made of: it can be moved, and shows nothing of itself.
+function(colod_part target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
 # A page as a C++ text: `colod_page(out header symbol page.html style.css script.js...)` makes a source that defines `symbol`
@@ -89,3 +95,5 @@ target_compile_definitions(tinygltf_headers INTERFACE TINYGLTF_NO_STB_IMAGE TINY
 
 colod_precompiled(colod_precompiled)
 colod_precompiled(colod_precompiled_cgal LINK CGAL::CGAL)
+colod_part(colod_precompiled)  # with the flags of the rooms that reuse it
+colod_part(colod_precompiled_cgal)

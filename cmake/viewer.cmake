@@ -20,5 +20,3 @@ add_custom_command(
   WORKING_DIRECTORY ${viewer_work}
   COMMENT "Bundling the viewer" VERBATIM)
 add_custom_target(viewer DEPENDS ${CMAKE_BINARY_DIR}/viewer/index.html)
-include(GNUInstallDirs)
-install(DIRECTORY ${CMAKE_BINARY_DIR}/viewer/ DESTINATION ${CMAKE_INSTALL_DATADIR}/colod/viewer OPTIONAL)

@@ -64,7 +64,7 @@ std::vector<std::string> rooms() {
   REQUIRE(std::regex_search(text, found, kAdded));
   std::istringstream words(found[1]);
   std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
-  for (const char* last : {"publish", "viewer", "cli"}) all.emplace_back(last);
+  for (const char* last : {"publish", "job", "viewer", "cli", "library"}) all.emplace_back(last);
   return all;
 }
 

@@ -52,7 +52,8 @@ void Log::progress(const std::string& building, const char* stage, int done, int
     std::fprintf(stderr, "\r\033[K%s %d/%d: %s", stage, done, total, building.c_str());
 }
 
-void Log::message(Level level, const std::string& text) const {
+void Log::message(const Message& message) const {
+  const auto& [level, text] = message;
   if (is_json_) return write_line({{"event", name(level)}, {"message", text}});
   if (is_quiet_ && level != Level::kError) return;
   if (is_terminal_ && !is_quiet_) std::fprintf(stderr, "\r\033[K");

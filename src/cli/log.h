@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace colod::cli {
+#include "publish/messages.h"
 
-enum class Level { kInfo, kWarning, kError };
+namespace colod::cli {
 
 /// File names and damaged files hold anything; a message is one line without control characters.
 std::string one_line(std::string text);
@@ -21,7 +21,7 @@ class Log {
   /// Not for quiet runs, and on a terminal (or as JSON) only.
   void progress(const std::string& building, const char* stage, int done, int total) const;
   /// Quiet runs print errors only.
-  void message(Level level, const std::string& text) const;
+  void message(const Message& message) const;
 
  private:
   bool is_quiet_, is_json_, is_terminal_;

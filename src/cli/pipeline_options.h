@@ -1,22 +1,16 @@
 // The options of the pipeline and of running it, shared by `build` and the stages.
 #pragma once
 
-#include <unistd.h>
-
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <optional>
 #include <sstream>
 
 #include "cli.h"
 #include "core/error.h"
 #include "core/options.h"
-#include "core/parallel.h"
 #include "log.h"
 #include "numbers.h"
 #include "rules/rules.h"
-#include "store/store.h"
 
 namespace colod::cli {
 
@@ -57,30 +51,6 @@ inline void add_prior_option(CLI::App& app, std::string& path) {
   app.add_option("--prior", path,
                  "an analysed scene file: each building for itself gets the layers it learnt")
       ->check(CLI::ExistingFile);
-}
-
-inline std::optional<Prior> read_prior(const std::string& path) {
-  if (path.empty()) return std::nullopt;
-  return Store(path, false).prior();
-}
-
-/// What the voxels of the buildings that are worked on at once take must fit into half of this
-/// machine's memory. Throws Error{kUsage} before the work.
-inline void check_cost(const Options& options, std::size_t buildings) {
-  constexpr double kBytesAVoxel = 16;  // measured: 14.5 GiB for 1000³ of a house
-  constexpr double kGiB = 1 << 30;
-  const double memory =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  const auto at_once = std::min<std::size_t>(thread_count(), std::max<std::size_t>(buildings, 1));
-  const double most = memory / 2 / static_cast<double>(at_once);
-  const double taken = kBytesAVoxel * std::pow(options.ns, 3);
-  if (taken <= most) return;
-  std::ostringstream cause;
-  cause << std::setprecision(3) << options.ns << " takes about " << taken / kGiB
-        << " GiB a building, " << at_once << " at once, of this machine's " << memory / kGiB
-        << " GiB: at most " << static_cast<int>(std::cbrt(most / kBytesAVoxel))
-        << ", or fewer --threads";
-  throw Error(Stage::kUsage, "--ns", cause.str());
 }
 
 /// --rules, which the others' defaults hang on, and --without.

@@ -12,9 +12,9 @@
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "input_options.h"
+#include "job/job.h"
 #include "numbers.h"
 #include "output.h"
-#include "pipeline/pipeline.h"
 #include "pipeline_options.h"
 #include "publish/report_pictures.h"
 #include "store/store.h"
@@ -67,7 +67,7 @@ int segment(const StageArguments& a) {
     problem.failure = b.failure;
     problem.warnings = b.warnings;
   });
-  report_problems(problems, log);
+  log_problems(problems, log);
   return exit_code(problems);
 }
 
@@ -172,7 +172,7 @@ int mesh(const StageArguments& a) {
       drop_geometry(problems.buildings.back());
     }
   }
-  report_problems(problems, log);
+  log_problems(problems, log);
   return exit_code(problems);
 }
 
@@ -186,7 +186,7 @@ void bring_source(Building& b, Store& store, std::mutex& mutex) {
 
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
-  check_place(a.output);
+  check_place(a.output.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   std::vector<Store> stores = open_all(a.inputs);
@@ -196,21 +196,18 @@ int export_files(const StageArguments& a) {
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
-  Depot memory;
-  Gallery gallery(scene.buildings.size(), options.layers, memory);
+  Gallery gallery(scene.buildings.size(), options.layers);
   std::mutex mutex;
-  if (!a.output.has_no_page)
+  if (!a.output.options.has_no_page)
     parallel_for(scene.buildings.size(), [&](std::size_t i) {
       Building& b = scene.buildings[i];
       bring_source(b, stores[file_of[i]], mutex);
-      gallery.drop(b);
+      gallery.draw(b);
       drop_geometry(b);
     });
-  decide_switches(scene, options.layers, switch_options(a.output),
-                  read_sights(a.prior, options.layers, log));
-  write_outputs(scene, a.output, log);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return finish(scene, options, seconds.count(), gallery.take(scene), a.output, log);
+  decide_switches(scene, options.layers, switch_options(a.output.options),
+                  read_sights(a.prior, options.layers, [&](const Message& m) { log.message(m); }));
+  return write_all(scene, options, start, gallery.take(scene), a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
@@ -255,7 +252,7 @@ Run add_export(CLI::App& app) {
   app.add_option("--prior", a->prior,
                  "a scene file with meshes: its buildings decide where all layers switch")
       ->check(CLI::ExistingFile);
-  add_output_options(app, a->output);
+  add_output_arguments(app, a->output);
   return [a] { return export_files(*a); };
 }
 

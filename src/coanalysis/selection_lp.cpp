@@ -8,12 +8,13 @@
 //
 // lp_solve's time limit is a wall clock; instead its abort callback counts its own calls, which
 // follow the simplex and so fall at the same place on every machine. lp_solve keeps static state:
-// one call at a time.
+// one program at a time in the whole process, which is what `door` is for.
 #include <lpsolve/lp_lib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "selection_model.h"
 
@@ -69,6 +70,8 @@ Program load(const LinearProgram& program) {
 WholeSolution solve_whole(const Model& model, long max_callbacks) {
   WholeSolution whole{Choice(model.items.size(), 0), false};
   if (model.items.empty()) return {{}, true};
+  static std::mutex door;
+  const std::lock_guard lock(door);
   const Program lp = load(write_program(model));
   if (!lp) return whole;
   Patience patience{max_callbacks};

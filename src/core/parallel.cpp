@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace colod {
@@ -45,9 +46,15 @@ void limit_threads(int threads) {
                                                       threads);
 }
 
+void in_threads(int threads, const std::function<void()>& body) {
+  if (threads <= 0) return body();
+  tbb::task_arena(threads).execute(body);
+}
+
 int thread_count() {
-  return static_cast<int>(
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return std::min(static_cast<int>(tbb::global_control::active_value(
+                      tbb::global_control::max_allowed_parallelism)),
+                  tbb::this_task_arena::max_concurrency());
 }
 
 }  // namespace colod

@@ -17,11 +17,15 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body,
 void parallel_ranges(std::size_t n, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
 
-/// At most `threads` threads from now on; 0 = all cores. Called once, by the command line or a
-/// test.
+/// At most `threads` threads from now on, in the whole process; 0 = all cores. Called once, by the
+/// command line or a test.
 void limit_threads(int threads);
 
-/// How many threads parallel_for may use.
+/// Runs `body` so that its loops take at most `threads` threads, 0 = no limit of its own. Two
+/// callers may have two limits at the same time.
+void in_threads(int threads, const std::function<void()>& body);
+
+/// How many threads parallel_for may use here.
 int thread_count();
 
 }  // namespace colod

@@ -329,7 +329,11 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
   }
 }
 
-void mesh_building(Building& b, const Options& options) {
+void Hooks::check() const {
+  if (is_cancelled && is_cancelled()) throw Cancelled{};
+}
+
+void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
   if (!b.failure.empty()) return;
   try {
     Sight sight(b.planes);
@@ -339,6 +343,7 @@ void mesh_building(Building& b, const Options& options) {
     mark_sides(shapes, b.planes);
     std::vector<int> planes;
     for (int k = 0; k < options.layers; ++k) {
+      hooks.check();
       Layer layer;
       layer.layer = k;
       layer.segments = static_cast<int>(std::count_if(
@@ -430,7 +435,7 @@ void for_each_source(const Inventory& inventory, const Reader& read,
 }
 
 Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
-                  Depot& depot, const Progress& progress, const Prior* prior) {
+                  const Hooks& hooks, const Prior* prior) {
   Scene scene;
   scene.failures = inventory.failures;
   scene.warnings = inventory.warnings;
@@ -439,27 +444,37 @@ Scene build_scene(const Inventory& inventory, const Reader& read, const Options&
   int done = 0;
   const auto report = [&](const Building& b, const char* stage) {
     const std::lock_guard lock(mutex);
-    if (progress) progress(b.source.name, stage, ++done, static_cast<int>(scene.buildings.size()));
+    if (hooks.progress)
+      hooks.progress(b.source.name, stage, ++done, static_cast<int>(scene.buildings.size()));
   };
   for_each_source(inventory, read, [&](Turn turn) {
+    hooks.check();
     Building& b = scene.buildings[turn.position];
     b = segment_building(std::move(turn), options);
-    depot.put(b);
+    for (const Observer& o : hooks.observers)
+      if (o.segmented) o.segmented(b);
+    if (hooks.depot) hooks.depot->put(b);
     report(b, "segments");
   });
+  hooks.check();
   analyze_scene(scene, options, prior);
   done = 0;
   parallel_for(scene.buildings.size(), [&](std::size_t i) {
+    hooks.check();
     Building& b = scene.buildings[i];
-    depot.get(b);
-    mesh_building(b, options);
-    depot.drop(b);
+    if (hooks.depot) hooks.depot->get(b);
+    mesh_building(b, options, hooks);
+    for (const Observer& o : hooks.observers)
+      if (o.meshed) o.meshed(b);
+    if (hooks.depot) hooks.depot->drop(b);
     report(b, "layers");
   });
+  hooks.check();
   return scene;
 }
 
-Scene build_scene(ReadResult input, const Options& options, const Prior* prior) {
+Scene build_scene(ReadResult input, const Options& options, const Hooks& hooks,
+                  const Prior* prior) {
   Inventory inventory{{}, std::move(input.failures), {}};
   for (const Source& s : input.sources) inventory.files.push_back({s.path, {s.name}});
   const Reader take = [&](std::size_t i) {
@@ -467,8 +482,7 @@ Scene build_scene(ReadResult input, const Options& options, const Prior* prior) 
     one.push_back(std::move(input.sources[i]));
     return one;
   };
-  Depot memory;
-  return build_scene(inventory, take, options, memory, {}, prior);
+  return build_scene(inventory, take, options, hooks, prior);
 }
 
 }  // namespace colod

@@ -122,20 +122,29 @@ Counts count(const Building& building);
 /// Lets go of source and planes, by far the most of a building's memory; counts and the rest stay.
 void drop_geometry(Building& building);
 
-/// Where source and planes of the buildings lie while the scene is analysed. This one leaves them
-/// in memory; store/store.h has one that does not, so that memory does not grow with the scene.
-/// Called from several threads.
+/// Where source and planes of the buildings lie while the scene is analysed, so that memory does
+/// not grow with it (store/store.h). Called from several threads.
 class Depot {
  public:
   virtual ~Depot() = default;
-  /// After the segments and their descriptors: may take them away. Name, path, segments and counts
+  /// After the segments and their descriptors: takes them away. Name, path, segments and counts
   /// stay.
-  virtual void put(Building&) {}
+  virtual void put(Building&) = 0;
   /// Before `mesh_building`: brings them back.
-  virtual void get(Building&) {}
+  virtual void get(Building&) = 0;
   /// After the measures: they are needed no more.
-  virtual void drop(Building&) {}
+  virtual void drop(Building&) = 0;
 };
+
+/// Who looks at buildings on their way; each may be empty. Called from several threads.
+struct Observer {
+  std::function<void(const Building&)> segmented;  ///< source and planes are still there
+  std::function<void(Building&)> meshed;           ///< layers are there, source and planes too
+};
+
+/// What is thrown when hooks say so. Not a std::exception: it is no failure of the building in
+/// hand.
+struct Cancelled {};
 
 /// Called from one thread at a time when a building has passed a stage.
 using Progress =
@@ -155,6 +164,17 @@ struct Turn {
 void for_each_source(const Inventory& inventory, const Reader& read,
                      const std::function<void(Turn)>& body);
 
+/// What stands around the pipeline; all of it may be left out.
+struct Hooks {
+  Depot* depot = nullptr;  ///< none: everything stays in memory
+  std::vector<Observer> observers;
+  Progress progress;
+  std::function<bool()> is_cancelled;  ///< asked between stages and layers, from several threads
+
+  /// Throws Cancelled.
+  void check() const;
+};
+
 /// `planes` to `coanalysis` for one building. Failures are recorded in the building, nothing is
 /// thrown.
 Building segment_building(Turn turn, const Options& options);
@@ -164,8 +184,8 @@ Building segment_building(Turn turn, const Options& options);
 /// layers is another.
 void analyze_scene(Scene& scene, const Options& options, const Prior* prior = nullptr);
 
-/// `partition` and `extraction` and the measures for one building.
-void mesh_building(Building& building, const Options& options);
+/// `partition` and `extraction` and the measures for one building. Throws Cancelled only.
+void mesh_building(Building& building, const Options& options, const Hooks& hooks = {});
 
 /// After the last building: sets own_gsd and gsd of all layers, and the scene's switching. With a
 /// prior that has sights, its buildings decide the scene's g. Layers are numbered below `layers`.
@@ -179,11 +199,12 @@ std::vector<PlacedPart> place_parts(const Building& building, const Source& sour
                                     const Truth& truth);
 
 /// All of it; a file is read when its turn comes. A file that cannot be read any more leaves failed
-/// buildings.
+/// buildings. Throws Cancelled.
 Scene build_scene(const Inventory& inventory, const Reader& read, const Options& options,
-                  Depot& depot, const Progress& progress = {}, const Prior* prior = nullptr);
+                  const Hooks& hooks = {}, const Prior* prior = nullptr);
 
 /// All of it on sources in memory.
-Scene build_scene(ReadResult input, const Options& options, const Prior* prior = nullptr);
+Scene build_scene(ReadResult input, const Options& options, const Hooks& hooks = {},
+                  const Prior* prior = nullptr);
 
 }  // namespace colod

@@ -131,24 +131,23 @@ std::vector<std::string> draw_building(const Building& b, const PictureOptions& 
   return pictures;
 }
 
-Gallery::Gallery(std::size_t buildings, int layers, Depot& depot)
-    : depot_(depot), options_(picture_options(buildings, layers)) {}
+Gallery::Gallery(std::size_t buildings, int layers)
+    : options_(picture_options(buildings, layers)) {}
 
-void Gallery::put(Building& b) { depot_.put(b); }
-void Gallery::get(Building& b) { depot_.get(b); }
+Observer Gallery::observer() {
+  return {.segmented = {}, .meshed = [this](Building& b) { draw(b); }};
+}
 
-void Gallery::drop(Building& b) {
-  if (hash_of(b.source.name) % options_.every == 0) {
-    Stopwatch watch(b.timings.pictures);
-    try {
-      std::vector<std::string> pictures = draw_building(b, options_);
-      const std::lock_guard lock(mutex_);
-      pictures_[b.source.name] = std::move(pictures);
-    } catch (const std::exception& e) {  // a building is not lost for want of its picture
-      b.warnings.push_back(std::string("no pictures: ") + e.what());
-    }
+void Gallery::draw(Building& b) {
+  if (hash_of(b.source.name) % options_.every != 0) return;
+  Stopwatch watch(b.timings.pictures);
+  try {
+    std::vector<std::string> pictures = draw_building(b, options_);
+    const std::lock_guard lock(mutex_);
+    pictures_[b.source.name] = std::move(pictures);
+  } catch (const std::exception& e) {  // a building is not lost for want of its picture
+    b.warnings.push_back(std::string("no pictures: ") + e.what());
   }
-  depot_.drop(b);
 }
 
 std::vector<std::vector<std::string>> Gallery::take(const Scene& scene) {

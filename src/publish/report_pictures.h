@@ -31,20 +31,21 @@ std::vector<std::string> draw_building(const Building& building, const PictureOp
 /// The colour of what appears on a layer.
 Color layer_color(int layer);
 
-/// Draws each building when its layers are done and its source is still there, and passes
-/// everything on. A building that cannot be drawn gets a warning. `buildings`: how many there are.
-class Gallery : public Depot {
+/// Draws buildings when their layers are done and their sources still there. A building that cannot
+/// be drawn gets a warning. `buildings`: how many there are.
+class Gallery {
  public:
-  Gallery(std::size_t buildings, int layers, Depot& depot);
-  void put(Building& building) override;
-  void get(Building& building) override;
-  void drop(Building& building) override;
+  Gallery(std::size_t buildings, int layers);
+
+  /// Thread-safe.
+  void draw(Building& building);
+  /// Lives no longer than the gallery.
+  Observer observer();
 
   /// Per building of the scene: its pictures, or none.
   std::vector<std::vector<std::string>> take(const Scene& scene);
 
  private:
-  Depot& depot_;
   PictureOptions options_;
   std::mutex mutex_;
   std::map<std::string, std::vector<std::string>> pictures_;

@@ -28,6 +28,7 @@ struct RawFile {
   bool has_doubtful_normals = false;  ///< perhaps colours: kept where the surface agrees
   std::string remarks;                ///< comments at the file's head: which program wrote it
   bool is_soup = false;               ///< faces share no points (STL, glTF): weld equal ones
+  bool is_from_memory = false;        ///< no other file stands beside it
   bool is_turned = false;             ///< already z up (glTF turns itself)
   Vec3 origin = Vec3::Zero();         ///< metres, added after units and axes (our own GLBs' extras)
 

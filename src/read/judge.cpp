@@ -244,7 +244,7 @@ void judge_unit(const RawFile& raw, const Facts& facts, const ReadOptions& optio
 Reading judge(const std::string& path, const RawFile& raw, const ReadOptions& options) {
   Reading how;
   const Facts facts = gather(raw);
-  const std::string system = system_beside(path);
+  const std::string system = raw.is_from_memory ? "" : system_beside(path);
   judge_degrees(path, facts, options, system, how);
   const int up = judge_axis(path, raw, facts, options, how);
   judge_unit(raw, facts, options, up, system, how);

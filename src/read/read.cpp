@@ -139,9 +139,10 @@ bool has_area(const Mesh& m) {
                      [&](const Face& f) { return face_area(m, f) > 0; });
 }
 
-/// Everything a file holds, split as asked. Throws when nothing in it is usable.
-std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
-  RawFile raw = read_raw(path, options);
+/// Everything a file says, split as asked; `stem` is what names begin with. Throws when nothing in
+/// it is usable.
+std::vector<Source> validate(const std::string& path, const std::string& stem, RawFile raw,
+                             const ReadOptions& options) {
   check_indices(path, raw);
   check_polygons(path, raw);
   const mesh_io::Reading how = mesh_io::judge(path, raw, options);
@@ -167,7 +168,6 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
       raw.warnings.push_back(std::to_string(dropped) +
                              " faces left out: a coordinate is not finite");
   }
-  const std::string stem = fs::path(path).stem().string();
   std::vector<Source> usable;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Source& s = sources[i];
@@ -188,6 +188,25 @@ std::vector<Source> read_file(const std::string& path, const ReadOptions& option
     mesh_io::fail(path, "none of " + std::to_string(raw.face_count()) +
                             " faces has a positive area and finite coordinates");
   return usable;
+}
+
+std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
+  return validate(path, fs::path(path).stem().string(), read_raw(path, options), options);
+}
+
+RawFile raw_of(const NamedArrays& arrays) {
+  RawFile raw;
+  raw.is_from_memory = true;
+  raw.points = arrays.points;
+  raw.normals = arrays.normals;
+  for (const Face& f : arrays.triangles) {
+    raw.face_begin.push_back(static_cast<int>(raw.corners.size()));
+    raw.corners.insert(raw.corners.end(), f.begin(), f.end());
+  }
+  if (!raw.normals.empty() && raw.normals.size() != raw.points.size())
+    mesh_io::fail(arrays.name, std::to_string(raw.normals.size()) + " normals for " +
+                                   std::to_string(raw.points.size()) + " points");
+  return raw;
 }
 
 /// One building of one file.
@@ -271,6 +290,39 @@ ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOption
   result.failures = std::move(inventory.failures);
   for (const InputFile& file : inventory.files)
     for (Source& s : read_file(file, options)) result.sources.push_back(std::move(s));
+  std::sort(result.sources.begin(), result.sources.end(),
+            [](const Source& a, const Source& b) { return a.name < b.name; });
+  return result;
+}
+
+ReadResult take_arrays(const std::vector<NamedArrays>& buildings, const ReadOptions& options) {
+  ReadOptions whole = options;
+  whole.split = Split::kNone;
+  std::vector<std::optional<Source>> found(buildings.size());
+  std::vector<std::string> problem(buildings.size());
+  parallel_for(buildings.size(), [&](std::size_t i) {
+    const std::string& name = buildings[i].name;
+    try {
+      found[i] = std::move(validate(name, name, raw_of(buildings[i]), whole).front());
+      found[i]->path.clear();
+    } catch (const Error& e) {
+      problem[i] = std::string(e.what()).substr(e.item.size() + 2);
+    } catch (const std::exception& e) {  // a library gave up: this building's problem only
+      problem[i] = std::string("cannot be taken: ") + e.what();
+    }
+  });
+  ReadResult result;
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    if (found[i])
+      entries.push_back({buildings[i].name, found[i]->name, i, 0});
+    else
+      result.failures.push_back({buildings[i].name, problem[i]});
+  make_unique(entries);
+  for (const Entry& e : entries) {
+    found[e.file]->name = e.name;
+    result.sources.push_back(std::move(*found[e.file]));
+  }
   std::sort(result.sources.begin(), result.sources.end(),
             [](const Source& a, const Source& b) { return a.name < b.name; });
   return result;

@@ -87,6 +87,18 @@ std::vector<Source> read_file(const InputFile& file, const ReadOptions& options 
 /// Throws Error{kInput} only when an INPUT does not exist or a folder holds no supported file.
 ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options = {});
 
+/// A building that a caller holds in memory.
+struct NamedArrays {
+  std::string name;             ///< any text, in UTF-8
+  std::vector<Vec3> points;     ///< in the unit and axes that ReadOptions say
+  std::vector<Vec3> normals;    ///< per point, or empty
+  std::vector<Face> triangles;  ///< empty: a cloud
+};
+
+/// As read_sources, of one building each, whatever options.split says: the same checks, and
+/// failures that name the building. Sources have no path.
+ReadResult take_arrays(const std::vector<NamedArrays>& buildings, const ReadOptions& options = {});
+
 /// One file as one mesh, all its objects together, for `colod eval` and `colod info`. Throws
 /// Error{kInput}. A building GLB with MSFT_lod gives the mesh of its scene (the finest layer).
 Source read_single(const std::string& path, const ReadOptions& options = {});

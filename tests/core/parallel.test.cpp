@@ -28,3 +28,18 @@ TEST_CASE("an exception of a body reaches the caller, and nothing to do is nothi
                   std::runtime_error);
   CHECK_NOTHROW(parallel_for(0, [](std::size_t) { throw std::runtime_error("x"); }));
 }
+
+TEST_CASE("a limit of one's own holds inside of it only") {
+  const int before = thread_count();
+  for (const int threads : {1, 2}) {
+    in_threads(threads, [&] {
+      CHECK(thread_count() <= threads);
+      std::atomic<int> count = 0;
+      parallel_for(100, [&](std::size_t) { ++count; });
+      CHECK(count == 100);
+    });
+    CHECK(thread_count() == before);
+  }
+  in_threads(0, [&] { CHECK(thread_count() == before); });
+  CHECK_THROWS_AS(in_threads(1, [] { throw std::runtime_error("x"); }), std::runtime_error);
+}

@@ -228,9 +228,8 @@ TEST_CASE("1 and 2 threads make the same page") {
   for (const int threads : {1, 2}) {
     limit_threads(threads);
     Scene scene = scene_of({house("a"), house("b", 2), house("c", 0.5)});
-    Depot memory;
-    Gallery gallery(3, 2, memory);
-    parallel_for(3, [&](std::size_t i) { gallery.drop(scene.buildings[i]); });
+    Gallery gallery(3, 2);
+    parallel_for(3, [&](std::size_t i) { gallery.draw(scene.buildings[i]); });
     for (Building& b : scene.buildings) b.timings = {};
     pages[threads - 1] = page_of(scene, gallery.take(scene));
   }

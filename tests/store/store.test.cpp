@@ -234,10 +234,9 @@ TEST_CASE("a scene is the same with its buildings in a temporary store") {
     one.push_back(house(houses[i].first, houses[i].second));
     return one;
   };
-  Depot memory;
   TemporaryStore disk;
-  const Scene kept = build_scene(inventory, read, options, memory);
-  const Scene parked = build_scene(inventory, read, options, disk);
+  const Scene kept = build_scene(inventory, read, options);
+  const Scene parked = build_scene(inventory, read, options, {.depot = &disk});
   REQUIRE(parked.buildings.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     const Building &a = kept.buildings[i], &b = parked.buildings[i];

@@ -1,0 +1,78 @@
+// The options of what is written, shared by `build`, `export` and the library.
+#pragma once
+
+#include <string>
+
+#include "cli.h"
+#include "numbers.h"
+#include "publish/outputs.h"
+
+namespace colod::cli {
+
+inline void add_switch_options(CLI::App& app, SwitchOptions& o) {
+  app.add_option_function<std::string>(
+         "--switch",
+         [&o](const std::string& v) {
+           o.measure = v == "deviation" ? SwitchMeasure::kDeviation : SwitchMeasure::kVisual;
+         },
+         "what decides from where on a layer may stand: visual (default), pictures of it beside "
+         "the finest one; or deviation, the distance between them")
+      ->check(CLI::IsMember({"visual", "deviation"}));
+  app.add_option_function<std::string>(
+         "--switch-scope",
+         [&o](const std::string& v) {
+           o.scope = v == "building" ? SwitchScope::kBuilding : SwitchScope::kScene;
+         },
+         "scene (default): all buildings switch at the same distance; building: each at its own")
+      ->check(CLI::IsMember({"scene", "building"}));
+  app.add_option(
+         "--visual-error", o.visual_error,
+         "with --switch visual: a change may be as large as a square of this side [pixels], "
+         "default 14")
+      ->check(number_between(1.0, 32.0));
+  app.add_option(
+         "--pixel-error", o.pixel_error,
+         "with --switch deviation, and for merged boxes of far tiles: how many pixels a layer "
+         "may be wrong when it is shown, default 2")
+      ->check(number_between(0.01, 1e4));
+  app.add_option("--switch-share", o.share,
+                 "with --switch-scope scene: the share of buildings whose own bound is kept, "
+                 "default 0.9")
+      ->check(number_between(0.0, 1.0));
+}
+
+inline void add_output_options(CLI::App& app, OutputOptions& a) {
+  app.add_option("--format", a.formats,
+                 "glb, 3dtiles, 3tz, engine, obj, ply; several with commas (default glb,3dtiles)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"glb", "3dtiles", "3tz", "engine", "obj", "ply"}));
+  app.add_option_function<std::string>(
+         "--compression",
+         [&a](const std::string& v) {
+           a.compression = v == "none"      ? Compression::kNone
+                           : v == "meshopt" ? Compression::kMeshopt
+                                            : Compression::kDraco;
+         },
+         "of GLBs: draco (default), meshopt or none")
+      ->check(CLI::IsMember({"draco", "meshopt", "none"}));
+  app.add_option("--quantization", a.quantization,
+                 "how far rounding may move a vertex [m], a third of it on the finest layer, "
+                 "default 0.01")
+      ->check(number_between(1e-5, 1.0));
+  app.add_option(
+      "--crs", a.crs,
+      "where on Earth the input is: EPSG:n of a projected system, EPSG:n+m with heights, "
+      "or local; default: what metadata.xml, ODM or Pix4D files beside the input say");
+  app.add_option("--origin", a.origin,
+                 "added to the input's coordinates: easting,northing[,height] in --crs; without "
+                 "--crs latitude,longitude[,height] of the input's origin")
+      ->check(position());
+  app.add_option("--target-sse", a.target_sse,
+                 "the screen-space error that clients refine at [pixels], default 16")
+      ->check(number_between(0.01, 1e4));
+  add_switch_options(app, a.switching);
+  app.add_flag("--no-report-html", a.has_no_page,
+               "report.json only, no report.html and no pictures for it");
+}
+
+}  // namespace colod::cli

@@ -1,0 +1,31 @@
+// What a person is told: one line a problem, and how a job ended.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/pipeline.h"
+
+namespace colod {
+
+enum class Level { kInfo, kWarning, kError };
+
+struct Message {
+  Level level = Level::kInfo;
+  std::string text;  ///< one line, unless a name in it holds something else
+};
+
+/// Takes messages as they come. Called from one thread.
+using Tell = std::function<void(const Message&)>;
+
+/// Failures as errors, the rest as warnings, in the order of the buildings.
+std::vector<Message> problems_of(const Scene& scene);
+
+/// "n of m buildings in s s, written to OUT …".
+Message summary_of(const Scene& scene, double seconds, const std::string& out);
+
+/// 0, 1, or 3 and 4 when nothing could be read or made.
+int exit_code(const Scene& scene);
+
+}  // namespace colod

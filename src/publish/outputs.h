@@ -1,0 +1,49 @@
+// A finished scene → the files that `colod build` and `colod export` write, in memory.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "exporters/exporter.h"
+#include "messages.h"
+#include "pipeline/pipeline.h"
+#include "report.h"
+
+namespace colod {
+
+struct OutputOptions {
+  std::vector<std::string> formats = {"glb", "3dtiles"};
+  Compression compression = Compression::kDraco;
+  double quantization = 0.01, target_sse = 16;
+  SwitchOptions switching;
+  std::string crs, origin;   ///< empty: what lies beside the sources says
+  bool has_no_page = false;  ///< no report.html
+};
+
+/// Per building of the scene, PNGs (report_pictures.h).
+using Pictures = std::vector<std::vector<std::string>>;
+
+/// Takes each file as soon as it is made, from several threads. What it throws ends the job.
+using Take = std::function<void(const Encoded&)>;
+
+/// With the rounding of what is written.
+SwitchOptions switch_options(const OutputOptions& options);
+
+/// Throws Error{kUsage} when crs and origin name no place; before the work rather than after.
+void check_place(const OutputOptions& options);
+
+/// After decide_switches: makes the files of all buildings, then those of the scene, tileset.json
+/// last; notes their seconds and bytes, and tells where on Earth the tileset is, if anywhere. A
+/// building that cannot be encoded becomes a failed one, a tileset that cannot is told of by
+/// Scene::tileset_failure.
+void encode_scene(Scene& scene, const OutputOptions& options, const Take& take, const Tell& tell);
+
+/// After encode_scene: report.html, unless options say no, and report.json. Without pictures the
+/// page has none.
+std::vector<Encoded> encode_report(const Scene& scene, const Options& options,
+                                   const RunTotals& totals, Pictures pictures,
+                                   const OutputOptions& output);
+
+}  // namespace colod
