@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -134,7 +135,8 @@ class Build(unittest.TestCase):
         text = (pathlib.Path(__file__).parents[2] / "docs" / "library.md").read_text()
         snippet = text.split("```python\n")[1].split("```")[0]
         with tempfile.TemporaryDirectory() as folder:
-            os.symlink(ASSETS, folder + "/houses")
+            os.mkdir(folder + "/houses")
+            shutil.copy(ASSETS / "house_01.obj", folder + "/houses")
             before = os.getcwd()
             os.chdir(folder)
             try:
