@@ -128,7 +128,8 @@ def row(rule, name, change):
 
 
 def section(rule, changes):
-    lines = [f"## {rule['id']}", "", rule["title"] + f" ([page](../rules/{rule['id']}.md)).", ""]
+    title = rule["title"][0].upper() + rule["title"][1:]
+    lines = [f"## {rule['id']}", "", title + f" ([page](../rules/{rule['id']}.md)).", ""]
     changed = {name: c for name, c in changes.items() if c}
     if changed:
         lines += ["| without it, on | distance | polygons | fails | agree |", "|---|---|---|---|---|"]

@@ -26,6 +26,7 @@ namespace colod {
 namespace {
 
 using namespace parameters::planes;
+using namespace regions;
 
 double used_area(const Items& items) {
   double sum = 0;
