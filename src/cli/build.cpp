@@ -40,7 +40,8 @@ Run add_build(CLI::App& app) {
   add_job_options(app, a->job);
   add_run_options(app, a->run);
   return [a] {
-    switch_off_dependents(a->options, a->run.log());
+    const Log log = a->run.log();
+    switch_off_dependents(a->job.options, [&](const Message& m) { log.message(m); });
     return build(*a);
   };
 }

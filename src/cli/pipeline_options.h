@@ -75,20 +75,6 @@ inline void add_rule_options(CLI::App& app, Options& options) {
       ->allow_extra_args(false);
 }
 
-/// Rules that need one that is off are off, too, which is said.
-inline void switch_off_dependents(Options& options, const Log& log) {
-  const RuleSet met = with_needs_met(options.rules);
-  if (met == options.rules) return;
-  std::string ids;
-  for (const RuleInfo& info : rule_table())
-    if (options.rules.has(info.rule) && !met.has(info.rule))
-      ids.append(ids.empty() ? "" : ", ").append(info.id);
-  log.message(
-      Level::kWarning,
-      "--without: " + ids + " off as well, for want of what is off: colod rules ID names it");
-  options.rules = met;
-}
-
 /// --rules, --without, --visibility, --layering and every row of the option table.
 inline void add_pipeline_options(CLI::App& app, Options& options) {
   add_rule_options(app, options);

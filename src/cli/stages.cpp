@@ -229,7 +229,8 @@ Run add_segment(CLI::App& app) {
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
   return [a] {
-    switch_off_dependents(a->options, a->run.log());
+    const Log log = a->run.log();
+    switch_off_dependents(a->options, [&](const Message& m) { log.message(m); });
     return segment(*a);
   };
 }

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "judge.h"
 #include "publish/report_pictures.h"
+#include "rules/rules.h"
 #include "store/store.h"
 
 namespace colod {
@@ -74,6 +75,19 @@ Product run_job(const std::vector<NamedArrays>& buildings, const Job& job, const
   return work(job, hooks, beside, count, [&](const Hooks& inner, const Prior* prior) {
     return build_scene(std::move(input), job.options, inner, prior);
   });
+}
+
+void switch_off_dependents(Options& options, const Tell& tell) {
+  const RuleSet met = with_needs_met(options.rules);
+  if (met == options.rules) return;
+  std::string ids;
+  for (const RuleInfo& info : rule_table())
+    if (options.rules.has(info.rule) && !met.has(info.rule))
+      ids.append(ids.empty() ? "" : ", ").append(info.id);
+  if (tell)
+    tell({Level::kWarning,
+          "--without: " + ids + " off as well, for want of what is off: colod rules ID names it"});
+  options.rules = met;
 }
 
 std::optional<Prior> read_prior(const std::string& path) {

@@ -54,4 +54,7 @@ std::vector<BuildingSights> read_sights(const std::string& prior, int layers, co
 /// machine's memory. Throws Error{kUsage} before the work.
 void check_cost(const Options& options, std::size_t buildings);
 
+/// Rules that need one that is off (rules/rules.h) are off, too, which is told.
+void switch_off_dependents(Options& options, const Tell& tell);
+
 }  // namespace colod

@@ -199,11 +199,11 @@ struct Access {
     impl->threads = settings.threads;
     Listener listener(callbacks);
     const auto start = std::chrono::steady_clock::now();
+    const colod::Tell tell = [&](const colod::Message& m) { impl->notes.push_back(message_of(m)); };
+    colod::switch_off_dependents(impl->job.options, tell);
     try {
       colod::in_threads(impl->threads, [&] {
-        impl->product = colod::run_job(
-            input, impl->job,
-            listener.hooks([&](const colod::Message& m) { impl->notes.push_back(message_of(m)); }));
+        impl->product = colod::run_job(input, impl->job, listener.hooks(tell));
       });
     } catch (const colod::Cancelled&) {
       listener.rethrow();
