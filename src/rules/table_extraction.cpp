@@ -232,7 +232,8 @@ std::vector<RuleInfo> surface_rules() {
        .reason = "The price grows with the building: large houses lost their windows.",
        .parameters = {{"most", "m³", simplify::kMostPrice, "chosen on 15 clean models"}},
        .needs = {Rule::kFacetPrice},
-       .test = "rules/effects: each rule of extraction changes a layer of a source made for it",
+       .test = "extraction/verbs: turning cells saves facets within its limits and never turns "
+               "forced cells",
        .made_on = {"ingolstadt-north", "synth"}},
       {.rule = Rule::kSheets,
        .id = "extraction.sheets",

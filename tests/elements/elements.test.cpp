@@ -276,7 +276,7 @@ TEST_CASE("a chimney's corner leaves a detail that is mostly something else, not
     for (int p = 0; p < static_cast<int>(planes.planes.size()); ++p)
       draft.segments[planes.planes[p].centroid.z() > 7.1].planes.push_back(p);
     draft.segments[0].voxels = 1000, draft.segments[1].voxels = is_detail ? 15 : 500;
-    give_to_elements(planes, grid, 80, draft);
+    give_to_elements(planes, grid, SegmentOptions{}, draft);
     REQUIRE(draft.segments.size() == (is_detail ? 3u : 2u));
     CHECK((draft.segments.back().planes == chimney[0].planes) == is_detail);
   }

@@ -152,7 +152,7 @@ TEST_CASE("each rule of extraction changes a layer of a source made for it") {
   std::vector<Building> before = houses;
   for (Building& b : before) mesh_building(b, with_rules(RuleSet::all(), 24));
   for (const Rule rule : {Rule::kSides, Rule::kElementCuts, Rule::kLeaders, Rule::kPruning,
-                          Rule::kRings, Rule::kMinCut, Rule::kFacetPrice, Rule::kPriceCap}) {
+                          Rule::kRings, Rule::kMinCut, Rule::kFacetPrice}) {
     INFO(info_of(rule).id);
     bool is_changed = false;
     for (std::size_t i = 0; i < houses.size() && !is_changed; ++i) {
