@@ -73,7 +73,7 @@ target_link_options(colod_flags INTERFACE $<$<CONFIG:Release>:-Wl,-z,relro,-z,no
 # them; there are none, and clang and its sanitizers look as well (scripts/sanitize).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12
    AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(colod_flags INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
+  target_compile_options(colod_flags INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
 endif()
 # Pragmas name warnings that GCC alone has.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
