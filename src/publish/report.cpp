@@ -169,7 +169,7 @@ Json overruled_json(const Scene& scene) {
     json.push_back({{"building", o.building},
                     {"segment", o.segment},
                     {"kind", name_of(o.kind)},
-                    {"rule", "coanalysis.whole-kinds"}});
+                    {"rule", "selection.whole_kinds"}});
   return json;
 }
 

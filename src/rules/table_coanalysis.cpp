@@ -41,7 +41,7 @@ std::vector<RuleInfo> program_rules() {
            "coanalysis/selection: lp_solve, and the ascent under its bound, against enumeration",
        .made_on = {"ingolstadt-north-scan"}},
       {.rule = Rule::kWholeKinds,
-       .id = "selection.whole-kinds",
+       .id = "selection.whole_kinds",
        .title = "the last of a kind leaves layer 0, too",
        .sees = "Elements of a kind of which most have left layer 0 by the program.",
        .does = "Takes the others off, as far as the bound on f_r lets it; the report lists each as "

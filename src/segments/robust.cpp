@@ -100,7 +100,9 @@ Segments robust_segments(const Planes& planes, const HitGrid& grid, const Segmen
   const bool has_fidelity = options.rules.has(Rule::kFidelity);
   if (!has_fidelity) cover_plain(draft);
   Segments result = finish_segments(planes, std::move(draft));
-  if (has_fidelity) result.coverage = fidelity_coverage(grid, result);
+  if (!has_fidelity) return result;
+  if (std::vector<Coverage> coverage = fidelity_coverage(grid, result); !coverage.empty())
+    result.coverage = std::move(coverage);
   return result;
 }
 
