@@ -8,36 +8,10 @@
 
 #include <algorithm>
 
+#include "outlines.h"
+
 namespace colod::synth {
 namespace {
-
-std::vector<Vec3> reversed(std::vector<Vec3> corners) {
-  std::reverse(corners.begin(), corners.end());
-  return corners;
-}
-
-/// An axis-parallel polygon moved outwards.
-std::vector<Vec2> offset(const std::vector<Vec2>& polygon, double by) {
-  std::vector<Vec2> moved;
-  const std::size_t n = polygon.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 before = (polygon[i] - polygon[(i + n - 1) % n]).normalized();
-    const Vec2 after = (polygon[(i + 1) % n] - polygon[i]).normalized();
-    const Vec2 out(before.y() + after.y(), -before.x() - after.x());
-    moved.push_back(polygon[i] + by * out);
-  }
-  return moved;
-}
-
-std::vector<Vec3> lifted(const std::vector<Vec2>& polygon, double z) {
-  std::vector<Vec3> corners;
-  for (const Vec2& p : polygon) corners.emplace_back(p.x(), p.y(), z);
-  return corners;
-}
-
-std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
 
 /// Upright quadrangles over a polygon's edges; returns one facet per edge.
 std::vector<int> add_walls(Solid& solid, const std::vector<Vec2>& polygon, double z0, double z1,
@@ -49,16 +23,6 @@ std::vector<int> add_walls(Solid& solid, const std::vector<Vec2>& polygon, doubl
         {{a.x(), a.y(), z0}, {b.x(), b.y(), z0}, {b.x(), b.y(), z1}, {a.x(), a.y(), z1}}, object));
   }
   return walls;
-}
-
-/// Between the walls and a roof that sticks out, seen from below.
-void add_soffit(Solid& solid, const std::vector<Vec2>& walls, const std::vector<Vec2>& eaves,
-                double z) {
-  const int soffit = solid.add(reversed(lifted(eaves, z)), kRoof);
-  Ring hole;
-  for (const Vec2& p : walls) hole.push_back(solid.facet(soffit).project({p.x(), p.y(), z}));
-  std::reverse(hole.begin(), hole.end());  // seen from below the polygon turns the other way
-  solid.cut(soffit, hole);
 }
 
 /// Roof planes over an axis-parallel rectangle, hipped on the short sides. Front, right, back,
@@ -140,7 +104,7 @@ WallsToEaves add_walls_to_eaves(House& house, const RoofShape& shape) {
   const auto eaves = offset(footprint, shape.overhang);
   solid.add(reversed(lifted(footprint, 0)), kBody);
   const auto walls = add_walls(solid, footprint, 0, shape.eaves, kBody);
-  add_soffit(solid, footprint, eaves, shape.eaves);
+  add_rim(solid, {eaves, {}}, {footprint, {}}, shape.eaves, false, kRoof);
   const double foot = shape.eaves + shape.thickness;
   add_walls(solid, eaves, shape.eaves, foot, kRoof);
   return {{walls[0], walls[1], walls[2], walls[3], {}}, eaves, foot};
@@ -226,7 +190,7 @@ WingedBody add_winged_body(House& house, const RoofShape& shape, double wing_x, 
   const auto eaves = offset(plan, shape.overhang);
   solid.add(reversed(lifted(plan, 0)), kBody);
   const auto walls = add_walls(solid, plan, 0, ze, kBody);
-  add_soffit(solid, plan, eaves, ze);
+  add_rim(solid, {eaves, {}}, {plan, {}}, ze, false, kRoof);
 
   const double x0 = eaves[0].x(), x1 = eaves[5].x(), y0 = eaves[0].y(), y1 = eaves[6].y();
   const double a = eaves[1].x(), b = eaves[4].x(), yw = eaves[2].y();
@@ -337,7 +301,7 @@ Body add_tower(ChurchDrawing& church, double w, double h, int tower) {
   const double x0 = across - y1, x1 = across - y0;  // after the turn
   const auto plan = rectangle(x0, -w, x1, 0);
   const auto eaves = offset(plan, 0.25);
-  add_soffit(solid, plan, eaves, h);
+  add_rim(solid, {eaves, {}}, {plan, {}}, h, false, kRoof);
   add_walls(solid, eaves, h, h + 0.25, kRoof);
   body.roofs =
       add_hips(solid, eaves[0].x(), eaves[0].y(), eaves[2].x(), eaves[2].y(), h + 0.25, 2.2, kRoof);

@@ -49,7 +49,5 @@ ChurchBody add_church_body(House& house, const RoofShape& shape, double tower_wi
 int style_count();
 /// Builds style number `style` with everything on it.
 House make_house(int style, std::uint64_t seed, const Catalogue& catalogue);
-/// Row houses stand wall to wall.
-bool is_row_style(int style);
 
 }  // namespace colod::synth

@@ -39,14 +39,17 @@ Ring arch(const Rect& r) {
 }
 
 /// Side by side in a frame; each a little deeper than it.
-void add_panes(Solid& solid, int frame, int panes, int object) {
+void add_panes(Solid& solid, int frame, int panes, int object, int rows = 1) {
   constexpr double kFrame = 0.07, kPaneDepth = 0.03;
   const double width = solid.facet(frame).width(), height = solid.facet(frame).height();
   const double pane = (width - (panes + 1) * kFrame) / panes;
-  for (int i = 0; i < panes; ++i) {
-    const double u = kFrame + i * (pane + kFrame);
-    solid.extrude(frame, Rect{u, kFrame, u + pane, height - kFrame}.ring(), -kPaneDepth, object);
-  }
+  const double tall = (height - (rows + 1) * kFrame) / rows;
+  for (int i = 0; i < panes; ++i)
+    for (int k = 0; k < rows; ++k) {
+      const double u = kFrame + i * (pane + kFrame), v = kFrame + k * (tall + kFrame);
+      const double top = k + 1 == rows ? height - kFrame : v + tall;
+      solid.extrude(frame, Rect{u, v, u + pane, top}.ring(), -kPaneDepth, object);
+    }
 }
 
 /// A leaf with two panels.
@@ -109,6 +112,19 @@ int House::new_part(ElementKind kind, const std::string& model, double relief) {
   return part.instance;
 }
 
+namespace {
+
+/// A frame of stone before the wall. Returns its front, and where the window lies on it.
+std::pair<int, Rect> add_surround(Solid& solid, int facet, const Rect& window, double relief,
+                                  int part) {
+  constexpr double kWidth = 0.12;
+  const int front = solid.extrude(facet, window.grown(kWidth).ring(), relief, part).cap;
+  const Rect all = bounds(solid.facet(front).outer);
+  return {front, all.grown(-kWidth)};
+}
+
+}  // namespace
+
 bool add_window(House& house, int facet, double u, double v, const WindowModel& model) {
   constexpr double kSillOverhang = 0.06, kSillHeight = 0.05, kSillDepth = 0.06;
   Solid& solid = house.solid;
@@ -119,9 +135,15 @@ bool add_window(House& house, int facet, double u, double v, const WindowModel& 
   if (model.has_sill) all = {sill.u0, sill.v0, sill.u1, rect.v1};
   if (!solid.fits(facet, all, kMargin)) return false;
   const int part = house.new_part(ElementKind::kWindow, model.name, model.reveal);
+  if (model.surround > 0) {
+    const auto [front, inner] = add_surround(solid, facet, rect, model.surround, part);
+    const int frame = solid.extrude(front, inner.ring(), -model.reveal - model.surround, part).cap;
+    if (model.panes > 0) add_panes(solid, frame, model.panes, part, model.rows);
+    return true;
+  }
   const Ring ring = model.is_arched ? arch(rect) : rect.ring();
   const int frame = solid.extrude(facet, ring, -model.reveal, part).cap;
-  if (model.panes > 0 && !model.is_arched) add_panes(solid, frame, model.panes, part);
+  if (model.panes > 0 && !model.is_arched) add_panes(solid, frame, model.panes, part, model.rows);
   if (model.has_sill) solid.extrude(facet, sill.ring(), kSillDepth, part);
   return true;
 }
@@ -134,29 +156,56 @@ bool add_door(House& house, int facet, double u, double v, const DoorModel& mode
   return true;
 }
 
+namespace {
+
+/// From a slab's underside down to the ground, along its front.
+void add_pillars(House& house, int facet, int underside, const Rect& slab,
+                 const BalconyModel& model, int part) {
+  constexpr double kFromEdge = 0.08;
+  Solid& solid = house.solid;
+  for (int i = 0; i < model.pillars; ++i) {
+    const double share = model.pillars == 1 ? 0.5 : i / (model.pillars - 1.0);
+    const double span = model.width - 2 * kFromEdge - model.pillar;
+    const double u = slab.u0 + kFromEdge + share * span, front = model.depth - kFromEdge;
+    const Ring base = on_floor(solid, facet, slab.v0,
+                               {{u, front - model.pillar},
+                                {u + model.pillar, front - model.pillar},
+                                {u + model.pillar, front},
+                                {u, front}},
+                               underside);
+    std::vector<Vec3> feet;
+    for (const Vec2& p : base)
+      feet.push_back(house.ground.on(solid.facet(underside).at(p.x(), p.y()).head<2>()));
+    solid.attach(underside, base, feet, part);
+  }
+}
+
+}  // namespace
+
 bool add_balcony(House& house, int facet, double u, double v, const BalconyModel& model,
                  const DoorModel& door) {
-  constexpr double kSlab = 0.18, kWall = 0.1;
   Solid& solid = house.solid;
-  const double half = model.width / 2, depth = model.depth;
-  const Rect slab = {u - half, v - kSlab, u + half, v};
+  const double half = model.width / 2, depth = model.depth, wall = model.wall;
+  const Rect slab = {u - half, v - model.slab, u + half, v};
   const Rect opening = {u - door.width / 2, v + kGap, u + door.width / 2, v + kGap + door.height};
   const Rect all = {slab.u0, slab.v0, slab.u1, opening.v1};
   if (!solid.fits(facet, all, kMargin)) return false;
   const int part = house.new_part(ElementKind::kBalcony, model.name, depth);
-  const int top = solid.extrude(facet, slab.ring(), depth, part).sides[2];
+  const Attached plate = solid.extrude(facet, slab.ring(), depth, part);
+  const int top = plate.sides[2];
   const double a = slab.u0 + kGap, b = slab.u1 - kGap, front = depth - kGap;
   const Ring parapet = on_floor(solid, facet, v,
                                 {{a, kGap},
                                  {a, front},
                                  {b, front},
                                  {b, kGap},
-                                 {b - kWall, kGap},
-                                 {b - kWall, front - kWall},
-                                 {a + kWall, front - kWall},
-                                 {a + kWall, kGap}},
+                                 {b - wall, kGap},
+                                 {b - wall, front - wall},
+                                 {a + wall, front - wall},
+                                 {a + wall, kGap}},
                                 top);
   solid.extrude(top, parapet, model.parapet, part);
+  add_pillars(house, facet, plate.sides[0], slab, model, part);
   add_opening(house, facet, opening, door, ElementKind::kDoor);
   solid.facet(facet).reserved.push_back(all);
   return true;
@@ -260,6 +309,18 @@ bool add_chimney(House& house, int facet, double u, double v, const ChimneyModel
   const Facet& crown = solid.facet(mouth);
   const Rect flue = Rect{0, 0, crown.width(), crown.height()}.grown(-0.12);
   solid.extrude(mouth, flue.ring(), -0.3, part);
+  return true;
+}
+
+bool add_ornament(House& house, int facet, double u, double v, const OrnamentModel& model) {
+  constexpr double kTaper = 0.2;  // of the width, on each side
+  Solid& solid = house.solid;
+  const Rect foot = {u - model.width / 2, v - model.height / 2, u + model.width / 2,
+                     v + model.height / 2};
+  if (!solid.fits(facet, foot, kMargin)) return false;
+  const int part = house.new_part(ElementKind::kOrnament, model.name, model.depth);
+  const double taper = kTaper * std::min(model.width, model.height);
+  solid.extrude(facet, foot.ring(), model.depth, part, foot.grown(-taper).ring());
   return true;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "solid.h"
+#include "outlines.h"
 #include "synth.h"
 
 namespace colod::synth {
@@ -33,6 +33,8 @@ struct WindowModel {
   double width, height, reveal;
   int panes;  ///< behind a frame; 0: no frame
   bool has_sill, is_arched;
+  int rows = 1;         ///< of panes
+  double surround = 0;  ///< metres that a frame of stone stands out; not around arches
 };
 struct DoorModel {
   std::string name;
@@ -41,6 +43,9 @@ struct DoorModel {
 struct BalconyModel {
   std::string name;
   double width, depth, parapet;
+  double slab = 0.18, wall = 0.1;  ///< metres of thickness
+  int pillars = 0;                 ///< below its front, down to the ground
+  double pillar = 0.25;            ///< metres of thickness
 };
 struct DormerModel {
   std::string name;
@@ -56,6 +61,11 @@ struct BayModel {
   double width, depth, splay;  ///< the front is narrower by `splay` on each side
 };
 struct LoggiaModel {
+  std::string name;
+  double width, height, depth;
+};
+
+struct OrnamentModel {
   std::string name;
   double width, height, depth;
 };
@@ -82,6 +92,8 @@ struct House {
   Solid solid;
   std::vector<SynthPart> parts;
   double width = 0, depth = 0;  ///< footprint in its frame: x in [0, width], y in [0, depth] or so
+  double before = 0, beside = 0;  ///< metres that it reaches beyond, to the street and to the sides
+  Ground ground;
 
   int new_part(ElementKind kind, const std::string& model, double relief);
   template <typename Model>
@@ -106,6 +118,8 @@ bool add_bay(House& house, int facet, double u, double v, double height, double 
 /// On a sloped facet; v along the slope.
 bool add_dormer(House& house, int facet, double u, double v, const DormerModel& model);
 bool add_chimney(House& house, int facet, double u, double v, const ChimneyModel& model);
+/// A relief on a wall, u and v its middle.
+bool add_ornament(House& house, int facet, double u, double v, const OrnamentModel& model);
 bool add_roof_window(House& house, int facet, double u, double v);
 /// A room for the stairs on a flat roof.
 bool add_stairhead(House& house, int facet, double u, double v);

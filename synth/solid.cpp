@@ -244,6 +244,26 @@ Attached Solid::extrude(int facet, const Ring& base, double height, int object,
   return attach(facet, base, cap, object);
 }
 
+std::vector<int> Solid::connect(int facet, const Ring& base, int other, int object) {
+  const Facet from = facets_[facet], to = facets_[other];
+  std::vector<Vec3> foot, end;
+  Ring ring;
+  for (const Vec2& p : base) {
+    foot.push_back(from.at(p.x(), p.y()));
+    const double t = (to.origin - foot.back()).dot(to.normal) / from.normal.dot(to.normal);
+    end.push_back(foot.back() + t * from.normal);
+    ring.push_back(to.project(end.back()));
+  }
+  if (signed_area(ring) < 0) std::reverse(ring.begin(), ring.end());
+  facets_[facet].holes.push_back(base);
+  facets_[other].holes.push_back(ring);
+  std::vector<int> sides;
+  const std::size_t n = base.size();
+  for (std::size_t i = 0; i < n; ++i)
+    sides.push_back(add({foot[i], foot[(i + 1) % n], end[(i + 1) % n], end[i]}, object));
+  return sides;
+}
+
 void Solid::cut(int facet, const Ring& base) { facets_[facet].holes.push_back(base); }
 
 bool Solid::fits(int facet, const Rect& rect, double margin) const {

@@ -60,12 +60,17 @@ class Solid {
   /// than the base, with parallel edges.
   Attached extrude(int facet, const Ring& base, double height, int object,
                    const Ring& cap_ring = {});
+  /// Joins two facets that face each other, or away from each other, by what stands on `base`
+  /// straight along the first one's normal: a pillar between them, or a passage through the solid.
+  /// Returns the sides.
+  std::vector<int> connect(int facet, const Ring& base, int other, int object);
   /// Cuts `base` out and leaves the rest to facets that the caller adds.
   void cut(int facet, const Ring& base);
 
   /// The rectangle, grown by `margin`, lies inside the facet and apart from all that is on it.
   bool fits(int facet, const Rect& rect, double margin) const;
 
+  int facet_count() const { return static_cast<int>(facets_.size()); }
   Facet& facet(int i) { return facets_[i]; }
   const Facet& facet(int i) const { return facets_[i]; }
 

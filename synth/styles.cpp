@@ -274,8 +274,6 @@ constexpr Maker kMakers[] = {make_row_house, make_villa,    make_apartments, mak
 
 int style_count() { return static_cast<int>(std::size(kMakers)); }
 
-bool is_row_style(int style) { return style == 0; }
-
 House make_house(int style, std::uint64_t seed, const Catalogue& catalogue) {
   return kMakers[style](seed, catalogue);
 }

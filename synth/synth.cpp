@@ -15,7 +15,10 @@
 #include "bodies.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "drone.h"
 #include "internal.h"
+#include "mixed.h"
+#include "variety.h"
 
 namespace colod {
 namespace {
@@ -64,12 +67,15 @@ struct Site {
   }
 };
 
+bool is_row_house(const House& house) { return house.style == "row_house"; }
+
 /// Four frontages, both sides of two streets that drift apart. The houses of one are placed side by
 /// side; only row houses touch.
-std::vector<Site> place_houses(const std::vector<House>& houses, const std::vector<int>& styles,
-                               std::uint64_t seed) {
+std::vector<Site> place_houses(const std::vector<House>& houses, std::uint64_t seed) {
   constexpr double kStreetYaw[2] = {-0.07, 0.09};  // rad
-  const Vec3 street_start[2] = {{0, 0, 0}, {6, 78, 0}};
+  double deepest = 0;
+  for (const House& h : houses) deepest = std::max(deepest, h.depth + 2 * h.before);
+  const Vec3 street_start[2] = {{0, 0, 0}, {6, std::max(78.0, 30 + 2 * deepest), 0}};
   constexpr double kHalfStreet = 5.5, kPartyGap = 0.02;
   Random random(seed * 101 + 3);
   std::vector<Site> sites(houses.size());
@@ -78,19 +84,19 @@ std::vector<Site> place_houses(const std::vector<House>& houses, const std::vect
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t side = std::min<std::size_t>(3, i / per_side), street = side / 2;
     if (i % per_side == 0 && i / per_side <= 3) along = 0;
-    const bool is_row = is_row_style(styles[i]);
-    const bool has_neighbour = is_row && i > 0 && is_row_style(styles[i - 1]) && along > 0;
-    along += has_neighbour ? kPartyGap : random.uniform(3.5, 7);
+    const bool is_row = is_row_house(houses[i]);
+    const bool has_neighbour = is_row && i > 0 && is_row_house(houses[i - 1]) && along > 0;
+    along += has_neighbour ? kPartyGap : houses[i].beside + random.uniform(3.5, 7);
     const double yaw = kStreetYaw[street], begin = along;
     const double setback =
-        kHalfStreet + (is_row ? 3.0 : random.uniform(3.5, 6)) +
+        kHalfStreet + houses[i].before + (is_row ? 3.0 : random.uniform(3.5, 6)) +
         (houses[i].style == "winged_house" || houses[i].style == "church" ? 6 : 0);
     const double turn = is_row ? 0 : random.uniform(-0.04, 0.04);
-    along += houses[i].width;
+    along += houses[i].width + houses[i].beside;
     const Vec3 x(std::cos(yaw), std::sin(yaw), 0), y(-x.y(), x.x(), 0);
     const bool is_far = side % 2 == 0;  // beyond the street, which lies towards its own −y
-    sites[i].origin =
-        street_start[street] + (is_far ? begin : along) * x + (is_far ? setback : -setback) * y;
+    sites[i].origin = street_start[street] + (is_far ? begin : along - houses[i].beside) * x +
+                      (is_far ? setback : -setback) * y;
     sites[i].yaw = yaw + turn + (is_far ? 0 : M_PI);
   }
   return sites;
@@ -99,7 +105,7 @@ std::vector<Site> place_houses(const std::vector<House>& houses, const std::vect
 double round_to_micrometre(double x) { return std::round(x * 1e6) / 1e6; }
 
 /// Boxes and levels of the parts, from the faces that carry their number.
-void measure_parts(SynthBuilding& building, const Mesh& local) {
+void measure_parts(SynthBuilding& building, const Mesh& local, SynthSizes sizes) {
   std::vector<Box> local_box(building.parts.size());
   for (std::size_t f = 0; f < local.faces.size(); ++f)
     for (int v : local.faces[f]) {
@@ -111,12 +117,14 @@ void measure_parts(SynthBuilding& building, const Mesh& local) {
     const bool is_main = part.kind == ElementKind::kPlain || part.kind == ElementKind::kRoof ||
                          part.kind == ElementKind::kSpire;
     const bool is_large =
-        part.depth >= kLargeRelief && local_box[part.instance].size().prod() >= kLargeVolume;
+        sizes == SynthSizes::kMixed
+            ? is_large_kind(part.kind)
+            : part.depth >= kLargeRelief && local_box[part.instance].size().prod() >= kLargeVolume;
     part.level = is_main ? 0 : is_large ? 1 : 2;
   }
 }
 
-SynthBuilding finish(const House& house, const Site& site, int index) {
+SynthBuilding finish(const House& house, const Site& site, int index, SynthSizes sizes) {
   SynthBuilding building;
   building.style = house.style;
   building.parts = house.parts;
@@ -127,8 +135,24 @@ SynthBuilding finish(const House& house, const Site& site, int index) {
   building.source.mesh = local;
   for (Vec3& v : building.source.mesh.vertices)
     v = site.to_world(v).unaryExpr([](double x) { return round_to_micrometre(x); });
-  measure_parts(building, local);
+  measure_parts(building, local, sizes);
   return building;
+}
+
+std::vector<House> build_houses(const SynthOptions& options) {
+  const Catalogue catalogue(options.seed);
+  const std::vector<int> styles = choose_styles(options);
+  std::vector<House> houses;
+  for (int i = 0; i < options.buildings; ++i) {
+    const std::uint64_t seed = building_seed(options.seed, i);
+    if (options.is_varied)
+      houses.push_back(make_varied_house(i, seed, options));
+    else if (options.sizes == SynthSizes::kMixed)
+      houses.push_back(make_mixed_house(i, styles[i], options.seed, seed));
+    else
+      houses.push_back(make_house(styles[i], seed, catalogue));
+  }
+  return houses;
 }
 
 nlohmann::json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -144,19 +168,23 @@ void append(std::string& bytes, const T& value) {
 
 std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options) {
   if (options.buildings < 1) throw Error(Stage::kUsage, "synth", "needs at least one building");
+  if (options.is_varied && options.sizes == SynthSizes::kMixed)
+    throw Error(Stage::kUsage, "synth", "mixed sizes are for streets that are not varied");
+  if ((options.has_slopes || options.plans != SynthPlans::kAny) && !options.is_varied)
+    throw Error(Stage::kUsage, "synth", "sloping ground and plans are of varied streets only");
+  if (!(options.scan_edge > 0))
+    throw Error(Stage::kUsage, "synth", "the length of a scan's edges must be positive");
   if (!(options.noise >= 0) || !(options.density > 0))
     throw Error(Stage::kUsage, "synth", "noise must not be negative, density must be positive");
-  const Catalogue catalogue(options.seed);
-  const std::vector<int> styles = choose_styles(options);
-  std::vector<House> houses;
-  for (int i = 0; i < options.buildings; ++i)
-    houses.push_back(make_house(styles[i], building_seed(options.seed, i), catalogue));
-  const std::vector<Site> sites = place_houses(houses, styles, options.seed);
+  const std::vector<House> houses = build_houses(options);
+  const std::vector<Site> sites = place_houses(houses, options.seed);
   std::vector<SynthBuilding> buildings(houses.size());
   parallel_for(houses.size(), [&](std::size_t i) {
-    buildings[i] = finish(houses[i], sites[i], static_cast<int>(i));
+    buildings[i] = finish(houses[i], sites[i], static_cast<int>(i), options.sizes);
   });
-  if (options.is_scan) {
+  if (options.is_drone) {
+    fly_over(buildings, options);
+  } else if (options.is_scan) {
     std::vector<Vec3> to_street;
     for (const Site& s : sites) to_street.push_back(s.to_world(-Vec3::UnitY()) - s.origin);
     scan_neighbourhood(buildings, to_street, options);
@@ -171,6 +199,11 @@ std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthO
                      {"scan", options.is_scan},
                      {"noise", options.noise},
                      {"density", options.density}};
+  if (options.sizes == SynthSizes::kMixed) root["options"]["sizes"] = "mixed";
+  if (options.is_varied) root["options"]["variety"] = true;
+  if (options.is_drone) root["options"]["drone"] = true;
+  if (options.is_drone) root["options"]["scan_edge"] = options.scan_edge;
+  if (options.has_slopes) root["options"]["slopes"] = true;
   root["buildings"] = nlohmann::ordered_json::array();
   for (const SynthBuilding& b : buildings) {
     nlohmann::ordered_json building;

@@ -10,13 +10,29 @@
 
 namespace colod {
 
+/// How large the parts of one kind are in a neighbourhood.
+enum class SynthSizes {
+  kAlike,  ///< as builders make them: a chimney is smaller than a dormer
+  kMixed   ///< from tiny to huge in every kind, so that no size tells a kind
+};
+
+/// What stands in a varied neighbourhood.
+enum class SynthPlans { kAny, kHalls, kOffices };
+
 struct SynthOptions {
   int buildings = 20;
   std::uint64_t seed = 1;
   bool is_scan =
       false;  ///< visible surface only, noise along the line of sight, holes, no floor, floaters
-  double noise = 0.025;  ///< metres, sigma of the scan's noise
-  double density = 40;   ///< samples per m² of the scan
+  bool is_drone = false;   ///< as drone photogrammetry gives it: bulging, melted, with ground and
+                           ///< trees; is_scan, noise and density then say nothing
+  double scan_edge = 0.6;  ///< metres, the median edge of a drone's mesh
+  double noise = 0.025;    ///< metres, sigma of the scan's noise
+  double density = 40;     ///< samples per m² of the scan
+  SynthSizes sizes = SynthSizes::kAlike;  ///< not with is_varied
+  bool is_varied = false;  ///< plans, roofs and makes from wide ranges, for development and tests
+  SynthPlans plans = SynthPlans::kAny;  ///< of varied houses
+  bool has_slopes = false;              ///< varied houses stand on sloping ground
 };
 
 /// One part of a building: a window, a balcony, a dormer…
@@ -26,7 +42,8 @@ struct SynthPart {
                       ///< size and all. Empty for body, roof and tower
   int instance = 0;   ///< its number within the building = the face's object number
   int level = 0;      ///< expected layer for l_n = 3: 0 body, roof, tower; 1 a part with at
-                      ///< least 0.4 m of relief and 1.5 m³ of box; 2 all others
+                      ///< least 0.4 m of relief and 1.5 m³ of box; 2 all others. With mixed
+                      ///< sizes the kind decides: 2 windows, doors and ornaments
   double depth = 0;   ///< metres of relief against its parent
   Box box;            ///< world
 };

@@ -1,6 +1,7 @@
 #include "synth/synth.h"
 
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "cli.h"
@@ -13,20 +14,28 @@ namespace {
 
 struct SynthArguments {
   SynthOptions options;
-  std::string out;
+  std::string out, scan;
   int threads = 0;
 };
 
+void write_models(const std::vector<SynthBuilding>& buildings, const std::string& out) {
+  for (const SynthBuilding& b : buildings) write_file(out, {b.source.name + ".obj", synth_obj(b)});
+}
+
 int synth(const SynthArguments& a) {
   limit_threads(a.threads);
-  const std::vector<SynthBuilding> buildings = make_neighbourhood(a.options);
-  for (const SynthBuilding& b : buildings) {
-    if (a.options.is_scan)
+  SynthOptions options = a.options;
+  const std::vector<SynthBuilding> buildings = make_neighbourhood(options);
+  if (options.is_scan || options.is_drone)
+    for (const SynthBuilding& b : buildings)
       write_file(a.out, {b.source.name + ".ply", synth_ply(b)});
-    else
-      write_file(a.out, {b.source.name + ".obj", synth_obj(b)});
+  else
+    write_models(buildings, a.out);
+  write_file(a.out, {"truth.json", truth_json(buildings, options)});
+  if (options.is_drone) {
+    options.is_drone = false;
+    write_models(make_neighbourhood(options), a.out + "/clean");
   }
-  write_file(a.out, {"truth.json", truth_json(buildings, a.options)});
   std::fprintf(stderr, "colod: %zu buildings and truth.json written to %s\n", buildings.size(),
                a.out.c_str());
   return 0;
@@ -41,14 +50,39 @@ Run add_synth(CLI::App& app) {
       ->check(number_between(1, 10000));
   app.add_option("--seed", a->options.seed, "of everything drawn at random, default 1")
       ->check(number_between(0.0, 9007199254740992.0));
-  app.add_flag("--scan", a->options.is_scan, "as a simulated photogrammetry mesh");
+  const CLI::Option* scan =
+      app.add_option("--scan", a->scan,
+                     "as a simulated photogrammetry mesh: near, with pictures from the street, or "
+                     "drone; near where none is named")
+          ->expected(0, 1)
+          ->check(CLI::IsMember({"near", "drone"}));
+  app.add_option("--scan-edge", a->options.scan_edge,
+                 "median edge of a drone's mesh [m], default 0.6")
+      ->check(number_between(0.02, 20.0));
   app.add_option("--noise", a->options.noise, "sigma of the scan's noise [m], default 0.025")
       ->check(number_between(0.0, 1.0));
   app.add_option("--density", a->options.density, "samples of the scan per m2, default 40")
       ->check(number_between(1.0, 1000.0));
+  app.add_option("--sizes", a->options.sizes,
+                 "alike: as builders make them; mixed: every kind from tiny to huge, so that no "
+                 "size tells a kind")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SynthSizes>{
+          {"alike", SynthSizes::kAlike}, {"mixed", SynthSizes::kMixed}}));
+  app.add_flag("--variety", a->options.is_varied,
+               "plans, roofs, windows, dormers and balconies of many makes, from wide ranges");
+  app.add_option("--plan", a->options.plans, "with --variety: any, hall or office alone")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SynthPlans>{{"any", SynthPlans::kAny},
+                                            {"hall", SynthPlans::kHalls},
+                                            {"office", SynthPlans::kOffices}}));
+  app.add_flag("--slopes", a->options.has_slopes, "with --variety: houses on sloping ground");
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
-  return [a] { return synth(*a); };
+  return [a, scan] {
+    a->options.is_drone = a->scan == "drone";
+    a->options.is_scan = scan->count() > 0 && !a->options.is_drone;
+    return synth(*a);
+  };
 }
 
 }  // namespace colod::cli

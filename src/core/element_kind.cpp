@@ -10,21 +10,17 @@
 namespace colod {
 namespace {
 
-constexpr std::array<std::pair<ElementKind, std::string_view>, 14> kNames = {
-    {{ElementKind::kPlain, "body"},
-     {ElementKind::kBalcony, "balcony"},
-     {ElementKind::kLoggia, "recess"},
-     {ElementKind::kDormer, "dormer"},
-     {ElementKind::kBay, "bay"},
-     {ElementKind::kSpire, "tower"},
-     {ElementKind::kWindow, "window"},
-     {ElementKind::kChimney, "chimney"},
-     {ElementKind::kDoor, "door"},
-     {ElementKind::kStairhead, "stairhead"},
-     {ElementKind::kSteps, "steps"},
-     {ElementKind::kThin, "thin"},
-     {ElementKind::kRoof, "roof"},
-     {ElementKind::kOther, "other"}}};
+constexpr std::array<std::pair<ElementKind, std::string_view>, 20> kNames = {
+    {{ElementKind::kPlain, "body"},      {ElementKind::kBalcony, "balcony"},
+     {ElementKind::kLoggia, "recess"},   {ElementKind::kDormer, "dormer"},
+     {ElementKind::kBay, "bay"},         {ElementKind::kSpire, "tower"},
+     {ElementKind::kWindow, "window"},   {ElementKind::kChimney, "chimney"},
+     {ElementKind::kDoor, "door"},       {ElementKind::kStairhead, "stairhead"},
+     {ElementKind::kSteps, "steps"},     {ElementKind::kThin, "thin"},
+     {ElementKind::kRoof, "roof"},       {ElementKind::kOrnament, "ornament"},
+     {ElementKind::kAnnex, "annex"},     {ElementKind::kParapet, "parapet"},
+     {ElementKind::kCornice, "cornice"}, {ElementKind::kArcade, "arcade"},
+     {ElementKind::kPassage, "passage"}, {ElementKind::kOther, "other"}}};
 
 }  // namespace
 

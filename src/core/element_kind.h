@@ -22,12 +22,19 @@ enum class ElementKind {
   kSteps,
   kThin,  ///< what has hardly a thickness: a railing, a wire
   kRoof,  ///< of the body
+  // Known to ground truths only:
+  kOrnament,
+  kAnnex,
+  kParapet,
+  kCornice,
+  kArcade,
+  kPassage,
   kOther
 };
 
 /// As ground truths, reports and groups of OBJ files write it: "body", "balcony", "recess"
 /// (loggia), "dormer", "bay", "tower" (spire), "window", "chimney", "door", "stairhead", "steps",
-/// "thin", "roof", "other".
+/// "thin", "roof", "ornament", "annex", "parapet", "cornice", "arcade", "passage", "other".
 std::string name_of(ElementKind kind);
 /// kOther for any other word.
 ElementKind kind_named(std::string_view name);

@@ -27,6 +27,17 @@ bool undo_filter(std::string& bytes, std::size_t count, std::size_t stride,
 
 }  // namespace
 
+std::vector<std::uint32_t> simplify_indices(const std::vector<float>& positions,
+                                            const std::vector<std::uint32_t>& indices,
+                                            std::size_t count) {
+  constexpr float kAnyError = 1e10f;
+  std::vector<std::uint32_t> kept(indices.size());
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
+                               positions.size() / 3, 3 * sizeof(float), count, kAnyError, 0,
+                               nullptr));
+  return kept;
+}
+
 void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
                     std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> sorted(indices.size()), remap(vertices);

@@ -1,4 +1,4 @@
-// The only door to meshoptimizer: EXT_meshopt_compression's payloads.
+// The only door to meshoptimizer: EXT_meshopt_compression's payloads, and quadric collapse.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,13 @@ namespace colod {
 /// vertex. `indices` hold the new numbers.
 void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
                     std::vector<std::uint32_t>& order);
+
+/// Collapses edges until `count` indices are left, or as few as the shape's topology allows,
+/// however far that is from the shape. `positions`: three numbers a vertex; vertices stay where
+/// they are.
+std::vector<std::uint32_t> simplify_indices(const std::vector<float>& positions,
+                                            const std::vector<std::uint32_t>& indices,
+                                            std::size_t count);
 
 /// mode TRIANGLES. A decoder may turn triangles.
 std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices);
