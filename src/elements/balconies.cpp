@@ -6,11 +6,12 @@
 //   thickness above the underside.
 // Notation: U floor of a balcony, W its walls, d one of four horizontal directions.
 #include "balconies.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

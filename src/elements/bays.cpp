@@ -5,11 +5,12 @@
 //   facade at their feet tell it.
 // Notation: –
 #include "bays.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

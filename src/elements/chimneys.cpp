@@ -2,11 +2,12 @@
 // Differs: –
 // Notation: –
 #include "chimneys.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

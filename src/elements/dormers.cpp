@@ -5,11 +5,12 @@
 //   are small and often not seen, and are added.
 // Notation: T the dormer's own roof, R the roof that it stands out of, d distance from R.
 #include "dormers.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

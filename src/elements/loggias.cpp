@@ -2,11 +2,12 @@
 // Differs: –
 // Notation: –
 #include "loggias.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

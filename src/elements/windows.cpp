@@ -6,11 +6,12 @@
 //   is added.
 // Notation: –
 #include "windows.h"
-#include "parameters.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "parameters.h"
 
 namespace colod::elements {
 namespace {

@@ -77,7 +77,7 @@ TEST_CASE("rules that are off reach the report, by options, config and scene fil
   const auto without = [&](const std::string& arguments) {
     REQUIRE(folder.colod(arguments).exit_code <= 1);
     return json::parse(slurp(folder.path() / "out/report.json"))["parameters"].value("without",
-                                                                                  json::array());
+                                                                                     json::array());
   };
   CHECK(without("build in -o out" + options).empty());
   const json expected = {"planes.coplanar", "planes.crossing", "planes.sheets", "chain.volume"};
