@@ -1,6 +1,5 @@
 // Based on: Co-LOD section 3.2, "Spectral Clustering": eigenvectors of the normalised Laplacian's
-// l_n − 1 smallest eigenvalues as features, k-means, order by size. k-means++ seeding: Arthur,
-// Vassilvitskii, "k-means++: the advantages of careful seeding", 2007.
+// l_n − 1 smallest eigenvalues as features, k-means, order by size.
 //
 // Differs. --rules paper: k eigenvectors, clusters are layers, by falling mean volume.
 // --rules robust: kinds are found first (kinds.h), and a kind is on one layer. Both: where there

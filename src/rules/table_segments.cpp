@@ -150,7 +150,9 @@ std::vector<RuleInfo> form_rules() {
        .parameters = {{"outline", "", kOutlineShare,
                        "of the fidelity; with 0.25 a spire goes, with 0.5 repeated balconies and "
                        "chimneys stay (synth-scan, seeds 1 and 2)"},
-                      {"together", "", kMostTogether, "segments of a set: a bound"}},
+                      {"together", "", kMostTogether,
+                       "segments of a set: a bound; what only more of them open together counts as "
+                       "never lost"}},
        .needs = {},
        .test = "segments/fidelity: a pane is worth nothing, a wing its volume, a spire its outline",
        .made_on = {"synth-scan"}}};
