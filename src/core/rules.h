@@ -16,6 +16,7 @@ enum class Rule : std::uint8_t {
   kFloaters,
   kRoundSides,
   kEllipses,
+  kRelief,
   kNoise,
   kFewPlanes,
   kSmoothNormals,

@@ -72,7 +72,8 @@ Surface surface_of(const Building& b) {
   if (!b.source.is_mesh()) return outline_soup(b.planes.planes);
   Mesh surface{b.source.mesh.vertices, {}};
   for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
-    if (b.planes.plane_of_item[f] != kFloater) surface.faces.push_back(b.source.mesh.faces[f]);
+    if (const int p = b.planes.plane_of_item[f]; p != kFloater && p != kAround)
+      surface.faces.push_back(b.source.mesh.faces[f]);
   return surface;
 }
 

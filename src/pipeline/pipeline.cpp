@@ -31,14 +31,24 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr const char* kEmptyLayer =
     "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
 
+/// What is melted has its relief's planes; all else is freed of its ground and inside first.
+void find_planes(Building& b, const Options& o) {
+  Stopwatch watch(b.timings.planes);
+  if (o.rules.has(Rule::kRelief))
+    if (std::optional<Relief> relief = find_relief(b.source.mesh)) {
+      b.planes = relief_planes(b.source, *std::move(relief));
+      return;
+    }
+  if (o.rules.has(Rule::kGround)) b.source = separate_ground(std::move(b.source));
+  if (o.rules.has(Rule::kHidden)) b.source = remove_hidden(std::move(b.source));
+  b.planes = detect_planes(b.source, {.rules = o.rules,
+                                      .distance = o.distance,
+                                      .angle_deg = o.angle_deg,
+                                      .min_points = o.min_points});
+}
+
 void find_segments(Building& b, const Options& o) {
-  {
-    Stopwatch watch(b.timings.planes);
-    b.planes = detect_planes(b.source, {.rules = o.rules,
-                                        .distance = o.distance,
-                                        .angle_deg = o.angle_deg,
-                                        .min_points = o.min_points});
-  }
+  find_planes(b, o);
   b.segments =
       build_segments(b.planes, {.rules = o.rules,
                                 .alcove_area = o.alcove_area,
@@ -164,12 +174,21 @@ void look_at_layers(Building& b) {
   for (std::size_t i = 0; i < shown.size(); ++i) shown[i]->sight = std::move(sights[i]);
 }
 
-std::vector<char> floaters(const Planes& planes) {
-  std::vector<char> is_floater;
-  for (const int plane : planes.plane_of_item) is_floater.push_back(plane == kFloater);
-  if (std::none_of(is_floater.begin(), is_floater.end(), [](char c) { return c; }))
-    is_floater.clear();
-  return is_floater;
+/// Per item whether it has this mark, or, without one, any; empty: none has.
+std::vector<char> parted(const Planes& planes, std::optional<int> mark = {}) {
+  std::vector<char> is_parted;
+  for (const int p : planes.plane_of_item)
+    is_parted.push_back(mark ? p == *mark : p == kFloater || p == kAround);
+  if (std::none_of(is_parted.begin(), is_parted.end(), [](char c) { return c; })) is_parted.clear();
+  return is_parted;
+}
+
+/// What the planes left out, told by reason.
+void tell_parted(Building& b) {
+  for (const auto& [mark, reason] : {std::pair{kAround, LeftOut::Reason::kGround},
+                                     std::pair{kFloater, LeftOut::Reason::kFloater}})
+    if (const std::vector<char> is_parted = parted(b.planes, mark); !is_parted.empty())
+      b.left_out.push_back(measure_left_out(b.source, is_parted, reason, b.left_out));
 }
 
 /// One warning for each layer that most buildings have nothing for.
@@ -265,13 +284,9 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
-    if (options.rules.has(Rule::kGround)) b.source = separate_ground(std::move(b.source));
-    if (options.rules.has(Rule::kHidden)) b.source = remove_hidden(std::move(b.source));
     find_segments(b, options);
     b.left_out = b.source.left_out;
-    if (const std::vector<char> parted = floaters(b.planes); !parted.empty())
-      b.left_out.push_back(
-          measure_left_out(b.source, parted, LeftOut::Reason::kFloater, b.left_out));
+    tell_parted(b);
   } catch (const Error& e) {
     b.failure = e.what();
   } catch (const std::exception& e) {  // a library gave up: this building's problem only
@@ -363,7 +378,7 @@ void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
       return;
     }
     replace_invented(surface, b);
-    const DistanceGauge source(b.source, {}, floaters(b.planes));
+    const DistanceGauge source(b.source, {}, parted(b.planes));
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, layer);
     look_at_layers(b);

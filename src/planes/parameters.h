@@ -21,6 +21,7 @@ constexpr double kLeastOffset = 0.05;   // metres: … and closer than this …
 constexpr double kLeastOffsetShare = 0.0025;  // … or this share of the building's diagonal
 constexpr double kPlainDistance = 0.003;      // metres: planes of exact models that have few
 constexpr double kMostDistance = 0.2;         // metres
+constexpr double kReliefDistance = 0.1;       // metres: between planes of a relief, at least
 constexpr double kLeastShare = 1e-4;          // of the building's area: the least region …
 constexpr double kLeastShareExact = 3e-5;  // … of an exact model: large houses have windows, too
 constexpr double kMostShare = 0.01;        // a region this large is never too small

@@ -20,6 +20,7 @@
 #include "parameters.h"
 #include "region.h"
 #include "regularize.h"
+#include "relief_planes.h"
 #include "round.h"
 
 namespace colod {
@@ -206,15 +207,6 @@ std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, d
   return planes;
 }
 
-void sort_planes(std::vector<Plane>& planes) {
-  const auto key = [](const Plane& p) {
-    return std::make_tuple(-p.area, p.centroid.x(), p.centroid.y(), p.centroid.z(),
-                           p.items.front());
-  };
-  std::sort(planes.begin(), planes.end(),
-            [&](const Plane& a, const Plane& b) { return key(a) < key(b); });
-}
-
 }  // namespace
 
 Planes::Surface surface_at(double distance) {
@@ -228,8 +220,7 @@ Planes detect_planes(const Source& source, const PlaneOptions& options) {
   std::vector<Region> regions = find_regions(items, options, result);
   orient_by_items(items, regions);
   result.planes = to_planes(items, regions, result.distance, rules);
-  if (result.planes.empty())
-    throw Error(Stage::kProcess, source.name, "no plane found: the surface is empty or too small");
+  if (result.planes.empty()) throw Error(Stage::kProcess, source.name, kNoPlane);
   const bool is_airborne_told = !items.is_mesh() && rules.has(Rule::kAirborne);
   if (rules.has(Rule::kOrientation))
     if (const int flipped = repair_orientation(result.planes, is_airborne_told); flipped > 0)

@@ -6,6 +6,7 @@
 
 #include "core/geometry.h"
 #include "core/rules.h"
+#include "relief/relief.h"
 
 namespace colod {
 
@@ -17,6 +18,8 @@ constexpr std::size_t kFewPlanes = 12;
 
 /// In plane_of_item: no part of the building, left out from the start.
 constexpr int kFloater = -2;
+/// Likewise: the ground around a building that is read as a relief (relief/relief.h).
+constexpr int kAround = -3;
 
 struct PlaneOptions {
   RuleSet rules = RuleSet::all();  ///< none: CGAL's region growing at the values below, nothing
@@ -37,7 +40,7 @@ struct Planes {
   };
 
   std::vector<Plane> planes;       ///< largest area first, ties by centroid
-  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none, kFloater
+  std::vector<int> plane_of_item;  ///< per face or point of the source; −1: none, kFloater, kAround
   Box box;                         ///< of the source without its floaters
   double total_area = 0;  ///< m² of the source without its floaters (cloud: sum of the outlines)
   double distance = 0;    ///< metres: the region growing distance used
@@ -57,5 +60,9 @@ Planes::Surface surface_at(double distance);
 /// `source` is in its local frame (read/frame.h). Deterministic; uses threads. Throws
 /// Error{kProcess} when no plane is found.
 Planes detect_planes(const Source& source, const PlaneOptions& options = {});
+
+/// The roofs and walls of the source's relief as planes; what lies around is kAround. Throws as
+/// above.
+Planes relief_planes(const Source& source, Relief relief);
 
 }  // namespace colod

@@ -6,6 +6,7 @@
 namespace colod::rules {
 
 std::vector<RuleInfo> source_rules();      ///< scene, planes' input
+std::vector<RuleInfo> relief_rules();      ///< melted meshes
 std::vector<RuleInfo> plane_rules();       ///< growing and regularity
 std::vector<RuleInfo> outline_rules();     ///< outlines, orientation, visibility
 std::vector<RuleInfo> segment_rules();     ///< segments

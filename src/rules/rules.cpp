@@ -46,8 +46,8 @@ const std::vector<RuleInfo>& rule_table() {
   static const std::vector<RuleInfo> table = [] {
     using namespace rules;
     std::vector<RuleInfo> rows;
-    for (auto part : {source_rules, plane_rules, outline_rules, segment_rules, coanalysis_rules,
-                      extraction_rules, element_rules, chain_rules})
+    for (auto part : {source_rules, relief_rules, plane_rules, outline_rules, segment_rules,
+                      coanalysis_rules, extraction_rules, element_rules, chain_rules})
       for (RuleInfo& row : part()) rows.push_back(std::move(row));
     std::sort(rows.begin(), rows.end(),
               [](const RuleInfo& a, const RuleInfo& b) { return a.rule < b.rule; });

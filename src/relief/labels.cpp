@@ -1,0 +1,216 @@
+// Based on: labels of a height field by nearest heights and a Potts prior (Boykov, Veksler & Zabih,
+// IEEE PAMI 23(11), 2001), by iterated conditional modes. Differs: – . Notation: –
+#include "labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <queue>
+#include <tuple>
+
+#include "parameters.h"
+
+namespace colod::relief {
+namespace {
+
+using namespace parameters::relief;
+
+constexpr int kOpen = -2;  // no label yet
+
+/// What a patch has around it.
+struct Shape {
+  double border = 0, at_ground = 0, at_nothing = 0;  // metres
+  double half_width = 0;                             // metres, where it is widest
+};
+
+class Labeller {
+ public:
+  Labeller(const Field& field, const Ground& ground, Patches patches, double noise, double span)
+      : f_(field),
+        ground_(ground),
+        patches_(std::move(patches.patches)),
+        label_(std::move(patches.patch_of_cell)),
+        noise_(noise),
+        span_(span) {
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] < 0) label_[i] = ground_.is_ground[i] ? kOutside : kOpen;
+    open_outside();
+  }
+
+  Labels run() {
+    drop_clutter();
+    spread();
+    for (int round = 0; round < kSmoothings; ++round) smooth();
+    drop_islands();
+    return {std::move(label_), std::move(patches_)};
+  }
+
+ private:
+  double height(int label, int i) const {
+    return label == kOutside ? ground_.height[i] : patches_[label].height(f_.center(i) - f_.origin);
+  }
+
+  /// What is not seen and reached from the grid's edge is outside; other holes stay open.
+  void open_outside() {
+    std::vector<int> open;
+    const auto visit = [&](int i) {
+      if (f_.has(i) || label_[i] == kOutside) return;
+      label_[i] = kOutside;
+      open.push_back(i);
+    };
+    for (int i = 0; i < f_.size(); ++i) {
+      const auto around = f_.beside(i);
+      if (std::any_of(around.begin(), around.end(), [](int j) { return j < 0; })) visit(i);
+    }
+    while (!open.empty()) {
+      const int i = open.back();
+      open.pop_back();
+      for (const int j : f_.beside(i))
+        if (j >= 0) visit(j);
+    }
+  }
+
+  std::vector<Shape> shapes() const {
+    std::vector<Shape> shapes(patches_.size());
+    std::vector<double> depth(f_.size(), 0);
+    for (const bool is_forward : {true, false})
+      for (int k = 0; k < f_.size(); ++k) {
+        const int i = is_forward ? k : f_.size() - 1 - k;
+        if (label_[i] < 0) continue;
+        const auto around = f_.beside(i);
+        double least = is_forward ? 1e300 : depth[i];
+        for (const int side : is_forward ? std::array{0, 2} : std::array{1, 3}) {
+          const int j = around[side];
+          least = std::min(least, j >= 0 && label_[j] == label_[i] ? depth[j] + f_.cell : f_.cell);
+        }
+        depth[i] = least;
+        if (!is_forward)
+          shapes[label_[i]].half_width = std::max(shapes[label_[i]].half_width, depth[i]);
+      }
+    for (int i = 0; i < f_.size(); ++i) {
+      if (label_[i] < 0) continue;
+      for (const int j : f_.beside(i)) {
+        const int other = j < 0 ? kOutside : label_[j];
+        if (other == label_[i]) continue;
+        Shape& s = shapes[label_[i]];
+        s.border += f_.cell;
+        s.at_ground += j >= 0 && f_.has(j) && other < 0 ? f_.cell : 0;
+        s.at_nothing += j < 0 || !f_.has(j) ? f_.cell : 0;
+      }
+    }
+    return shapes;
+  }
+
+  /// Patches that are none: too small, or the side of a melted wall (their neighbours take them),
+  /// crowns and cars beside the building, and strips of what stands next door (they are outside).
+  void drop_clutter() {
+    const std::vector<Shape> shape = shapes();
+    double total = 0;
+    for (const Patch& p : patches_) total += p.area;
+    std::vector<int> becomes(patches_.size());
+    for (std::size_t a = 0; a < patches_.size(); ++a) {
+      const Patch& p = patches_[a];
+      const Shape& s = shape[a];
+      const bool is_rough = p.residual > std::max(kRough * noise_, kLeastRough);
+      const bool is_strip = s.half_width < kStrip && s.at_nothing > kStripShare * s.border;
+      const bool is_minor = p.area < kMinor * total;
+      becomes[a] = static_cast<int>(a);
+      if (is_minor && is_strip) becomes[a] = kOutside;
+      if (is_minor && is_rough) becomes[a] = s.at_ground > 0.5 * s.border ? kOutside : kOpen;
+      const bool is_slide =
+          p.slope.norm() > kSlide && s.half_width < std::max(kStrip, kSlideSpan * span_);
+      const bool is_speck = p.area < kLeastPatch * span_ * span_ || s.half_width < kThin;
+      if ((is_slide || is_speck) && becomes[a] >= 0) becomes[a] = kOpen;
+    }
+    if (std::none_of(becomes.begin(), becomes.end(), [](int b) { return b >= 0; })) return;
+    for (int& l : label_)
+      if (l >= 0) l = becomes[l];
+  }
+
+  /// Open cells are taken from their labelled neighbours, where that fits their height best first.
+  void spread() {
+    using Step = std::tuple<double, int, int>;  // cost, cell, label
+    std::priority_queue<Step, std::vector<Step>, std::greater<>> steps;
+    const auto reach = [&](double cost, int i, int label) {
+      const double off = f_.has(i) ? std::abs(f_.height[i] - height(label, i)) : 0;
+      steps.push({cost + f_.cell + off, i, label});
+    };
+    const auto go_on = [&](double cost, int i) {
+      for (const int j : f_.beside(i))
+        if (j >= 0 && label_[j] == kOpen) reach(cost, j, label_[i]);
+    };
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] != kOpen) go_on(0, i);
+    while (!steps.empty()) {
+      const auto [cost, i, label] = steps.top();
+      steps.pop();
+      if (label_[i] != kOpen) continue;
+      label_[i] = label;
+      go_on(cost, i);
+    }
+    for (int& l : label_)
+      if (l == kOpen) l = kOutside;
+  }
+
+  /// Each cell takes the label that its height and its eight neighbours ask for.
+  void smooth() {
+    std::vector<int> next = label_;
+    for (int r = 1; r + 1 < f_.rows; ++r)
+      for (int c = 1; c + 1 < f_.columns; ++c) {
+        const int i = r * f_.columns + c;
+        std::array<int, 8> around;
+        for (int k = 0, at = 0; k < 9; ++k)
+          if (k != 4) around[at++] = label_[i + (k / 3 - 1) * f_.columns + k % 3 - 1];
+        double least = 1e300;
+        const auto weigh = [&](int label) {
+          const double off = f_.has(i) ? (f_.height[i] - height(label, i)) / noise_ : 0;
+          const double cost = std::min(off * off, kMostOff) +
+                              static_cast<double>(std::count_if(around.begin(), around.end(),
+                                                                [&](int l) { return l != label; }));
+          if (cost < least - 1e-9) least = cost, next[i] = label;
+        };
+        weigh(label_[i]);
+        for (const int l : around) weigh(l);
+      }
+    label_.swap(next);
+  }
+
+  /// Parts of the building that stand apart and are small, are not of it.
+  void drop_islands() {
+    std::vector<int> island(f_.size(), -1);
+    std::vector<int> count;
+    for (int seed = 0; seed < f_.size(); ++seed) {
+      if (label_[seed] < 0 || island[seed] >= 0) continue;
+      const int id = static_cast<int>(count.size());
+      std::vector<int> open{seed};
+      island[seed] = id;
+      count.push_back(0);
+      while (!open.empty()) {
+        const int i = open.back();
+        open.pop_back();
+        ++count.back();
+        for (const int j : f_.beside(i))
+          if (j >= 0 && label_[j] >= 0 && island[j] < 0) island[j] = id, open.push_back(j);
+      }
+    }
+    if (count.empty()) return;
+    const double most = *std::max_element(count.begin(), count.end());
+    for (int i = 0; i < f_.size(); ++i)
+      if (island[i] >= 0 && count[island[i]] < kIsland * most) label_[i] = kOutside;
+  }
+
+  const Field& f_;
+  const Ground& ground_;
+  std::vector<Patch> patches_;
+  std::vector<int> label_;
+  double noise_, span_;
+};
+
+}  // namespace
+
+Labels label_field(const Field& field, const Ground& ground, Patches patches, double noise,
+                   double span) {
+  return Labeller(field, ground, std::move(patches), noise, span).run();
+}
+
+}  // namespace colod::relief

@@ -1,0 +1,24 @@
+// Inside room `relief`: which roof each place of the field belongs to.
+#pragma once
+
+#include <vector>
+
+#include "field.h"
+#include "ground.h"
+#include "patches.h"
+
+namespace colod::relief {
+
+constexpr int kOutside = -1;
+
+struct Labels {
+  std::vector<int> of_cell;  ///< a patch, or kOutside
+  std::vector<Patch> patches;
+};
+
+/// Every cell of the building gets a patch: walls, holes and what is too small or too rough for one
+/// of its own go to the neighbour whose height is nearest. `noise`, `span` as for find_patches.
+Labels label_field(const Field& field, const Ground& ground, Patches patches, double noise,
+                   double span);
+
+}  // namespace colod::relief

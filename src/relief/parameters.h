@@ -1,0 +1,89 @@
+// The numbers of the rules relief.*.
+// The registry in room `rules` says what each does and why it has its value.
+#pragma once
+
+namespace colod::parameters::relief {
+
+constexpr double kCellShare = 0.35;                  // of the median edge: a cell
+constexpr double kLeastCell = 0.1, kMostCell = 0.5;  // metres
+constexpr double kMostCells = 400;                   // along the longer side
+constexpr double kSteep = 1.7;                       // metres a metre (60°): a wall
+constexpr double kRoom = 2;              // metres around a place, where noise is measured
+constexpr double kNoiseQuantile = 0.35;  // of such places: the others have edges in them
+constexpr int kSamples = 500;
+
+// Whether a mesh is melted.
+constexpr double kSteepFace = 0.6;                   // |z| of a normal: steeper is a wall's
+constexpr double kWindow = 1.5, kWindowEdges = 1.5;  // metres, or median edges around a face
+constexpr int kLeastSides = 8;                       // faces there
+constexpr std::size_t kMostSides = 400;              // of a cube of that size, that are looked at
+constexpr double kAlike = 0.5;                       // cosine between their normals
+constexpr double kExactBulge = 0.005;                // metres: less is exact, or nearly so
+constexpr double kLooksDown = 0.02, kFieldLooksDown = 0.02;  // −z of normals; share of the walls
+constexpr double kCoarseBulge = 0.045;                       // metres, and …
+constexpr double kCoarse = 0.3, kToldBulges = 4;  // … metres of edge, or of so many bulges
+constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
+constexpr double kExplained = 0.7;  // of the surface: near roofs and walls
+
+// Scales.
+constexpr double kLeastSpan = 1;                         // metres that bumps are wide, at least
+constexpr double kLeastNoise = 0.03, kMostNoise = 0.35;  // metres
+constexpr double kToleranceEdge = 0.4;   // of the median edge: what a border may leave its line …
+constexpr double kToleranceNoise = 2.5;  // … or times the noise …
+constexpr double kLeastTolerance = 0.45, kMostTolerance = 0.8;  // … between these metres
+
+// The ground around.
+constexpr double kLowRim = 0.05, kHighRoof = 0.9;  // quantiles of heights
+constexpr double kLeastRise = 2;                   // metres between them: a building
+constexpr double kRimShare = 0.35;    // of that rise: what is lower at the rim is ground …
+constexpr double kGroundShare = 0.5;  // … as is what is reached from there, at most so high
+constexpr double kGroundSlope = 1;    // metres a metre that the ground may climb
+constexpr double kLeastFeet = 3;      // metres of wall that stand on it
+constexpr double kLowFoot = 0.1;      // quantile of its height at walls: the foot
+constexpr double kLowCorner = 0.02;   // without ground: of all corners' heights
+
+// Patches.
+constexpr double kPatchPrice = 12;  // bumps' squares of noise that a plane must explain
+constexpr double kBorderPrice = 2;  // metres of noise beside a metre of border: likewise
+
+// Labels.
+constexpr double kRough = 3, kLeastRough = 0.4;  // times the noise, and metres: a crown's residual
+constexpr double kMinor = 0.15;       // of all patches' area: what may be no part of the building
+constexpr double kThin = 0.45;        // metres of half its width: a parapet, or a crest of noise
+constexpr double kStrip = 0.9;        // metres of half its width: next door's …
+constexpr double kStripShare = 0.35;  // … if so much of its border is where the mesh ends
+constexpr double kSlide = 0.85;      // metres a metre (40°): a strip so steep is a melted wall …
+constexpr double kSlideSpan = 0.8;   // … up to so many bumps on each side
+constexpr double kLeastPatch = 1.5;  // bumps' squares
+constexpr int kSmoothings = 4;
+constexpr double kMostOff = 9;    // squared, in noise: more is as bad
+constexpr double kIsland = 0.05;  // of the largest part
+
+// Borders.
+constexpr double kSpread = 0.07;       // radians (4°) that pieces of one direction spread
+constexpr double kFollow = 0.26;       // radians (15°): a piece takes the building's direction …
+constexpr double kShortPiece = 3;      // metres: … twice that if shorter
+constexpr double kSecondShare = 0.15;  // of all length: another direction
+constexpr double kParallel = 0.05;     // sine between pieces that may share a line
+constexpr double kLeastSine = 0.25;    // between lines that make a corner
+constexpr double kReach = 3;           // tolerances that a corner may move
+constexpr double kChamfer = 2.5;       // tolerances, or …
+constexpr double kMelted = 1.6;        // … metres: a melted corner is no longer
+constexpr double kLeastCrease = 0.12;  // metres a metre between the slopes of two roofs that meet
+constexpr double kCreaseReach = 2;     // tolerances between such a border and where planes meet
+
+// Roofs and walls.
+constexpr double kTrim = 2.5;         // times the noise: cells farther off say nothing of a roof
+constexpr double kLevelSlope = 0.06;  // metres a metre (3.4°): level
+constexpr double kSquare = 0.35;      // radians (20°) between a slope and the building's direction
+constexpr double kSameTilt = 0.09;    // metres a metre between slopes that get one tilt
+constexpr double kExcused = 0.5;      // of the noise, that this may add to a roof's residual
+constexpr double kLeastStep = 0.3;    // metres, or …
+constexpr double kStepNoise = 1.5;    // … times the noise: a step between roofs is a wall
+constexpr double kWallReach = 1.2;    // metres between a steep face and its wall
+constexpr double kBeside = 1.5;       // metres into the building that its neighbours hang over
+constexpr double kRoofReach = 1;      // metres between a face and its roof
+constexpr double kFacing = 0.7;       // cosine between a steep face and the wall that it is of
+constexpr double kLeastWall = 2;      // m² of such faces: a wall is seen
+
+}  // namespace colod::parameters::relief

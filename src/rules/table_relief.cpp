@@ -1,0 +1,69 @@
+// The row of what is melted.
+#include "parts.h"
+#include "relief/parameters.h"
+
+namespace colod::rules {
+namespace {
+
+using namespace parameters;
+
+std::vector<Parameter> melted_numbers() {
+  return {
+      {"exact_bulge", "m", relief::kExactBulge,
+       "residual of the flattest quarter of all pieces of wall and roof: less is exact"},
+      {"field_looks_down", "", relief::kFieldLooksDown,
+       "share of the walls that looks down: a height field has none, scans from the street a third "
+       "and more"},
+      {"coarse_bulge", "m", relief::kCoarseBulge,
+       "of meshes that are none: scans from the street have 0.024 and less"},
+      {"coarse", "m", relief::kCoarse, "median edge, or four bulges: windows cannot be told"},
+      {"explained", "", relief::kExplained,
+       "share of the surface that must lie near the roofs and walls: canopies and bridges are no "
+       "relief"},
+      {"least_reach", "m", relief::kLeastReach, "near, at least"},
+      {"least_span", "m", relief::kLeastSpan, "width of bumps, at least; else the median edge"},
+      {"patch_price", "", relief::kPatchPrice,
+       "bumps' squares of noise that a roof's plane must explain; half of it changes hardly "
+       "anything on 66 cut-outs"},
+      {"border_price", "m", relief::kBorderPrice, "of noise beside a metre of border: likewise"},
+      {"least_tolerance", "m", relief::kLeastTolerance, "that borders may leave their lines"},
+      {"most_tolerance", "m", relief::kMostTolerance, "likewise, where edges and noise are larger"},
+      {"least_rise", "m", relief::kLeastRise, "of a building over its ground"},
+      {"ground_slope", "", relief::kGroundSlope, "that the ground may climb without a wall"},
+      {"strip", "m", relief::kStrip, "half the width of what is cut from next door"},
+      {"thin", "m", relief::kThin, "half the width of what is no roof of its own"},
+      {"slide", "", relief::kSlide, "slope of a strip that is the side of a melted wall"},
+      {"melted", "m", relief::kMelted, "length of a melted corner"},
+      {"level_slope", "", relief::kLevelSlope, "of a roof that is level"},
+      {"square", "rad", relief::kSquare, "between a roof's slope and the building's direction"},
+      {"least_step", "m", relief::kLeastStep, "between roofs that have a wall between them"}};
+}
+
+RuleInfo melted_rule() {
+  return {
+      .rule = Rule::kRelief,
+      .id = "relief.melted",
+      .title = "a melted mesh is read as roofs and upright walls",
+      .sees =
+          "Meshes of which no more than the relief is known: height fields, whose walls lean "
+          "outward everywhere, and meshes so coarse or bulging that windows cannot be told, if "
+          "roofs and walls explain them.",
+      .does =
+          "Draws the mesh as heights, parts the ground around, joins neighbouring pieces of roof "
+          "while a plane explains less than it costs, draws borders onto few lines of few "
+          "directions, and hands on these roofs and the upright walls between them as planes.",
+      .paper = "The paper grows planes in space, of whatever surface.",
+      .reason =
+          "Each bump became a plane: of 47 buildings of a drone scene the finest layer had more "
+          "triangles than its source on 38, with flaps, spikes and walls that lean.",
+      .parameters = melted_numbers(),
+      .needs = {},
+      .test = "relief/relief: a melted hall is its walls and one roof, at any size and density",
+      .made_on = {"bocimi", "machangara"}};
+}
+
+}  // namespace
+
+std::vector<RuleInfo> relief_rules() { return {melted_rule()}; }
+
+}  // namespace colod::rules

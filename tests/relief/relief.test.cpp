@@ -1,0 +1,159 @@
+#include "relief/relief.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "meshes.h"
+#include "pipeline/pipeline.h"
+#include "planes/planes_helpers.h"
+
+using namespace colod;
+
+namespace {
+
+using Heights = std::function<double(double x, double y)>;
+
+/// The surface over a square of side `side`, in triangles of about `edge`: walls lean by one of
+/// them.
+Mesh field(double side, double edge, const Heights& height) {
+  const int n = static_cast<int>(std::ceil(side / edge));
+  Mesh m;
+  for (int r = 0; r <= n; ++r)
+    for (int c = 0; c <= n; ++c) {
+      const double x = side * (static_cast<double>(c) / n - 0.5);
+      const double y = side * (static_cast<double>(r) / n - 0.5);
+      m.vertices.emplace_back(x, y, height(x, y));
+    }
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < n; ++c) {
+      const int a = r * (n + 1) + c, b = a + 1, d = a + n + 1;
+      m.faces.push_back({a, b, d + 1});
+      m.faces.push_back({a, d + 1, d});
+    }
+  return m;
+}
+
+/// Bumps some metres wide.
+double bump(double x, double y, double most) {
+  return most * std::sin(1.9 * x + 0.7) * std::cos(1.3 * y - 0.4);
+}
+
+/// An L of `size`, a third of it missing, on ground.
+Heights ell(double size, double height, double bulge) {
+  return [=](double x, double y) {
+    const double h = size / 2;
+    const bool is_in = std::abs(x) < h && std::abs(y) < h && !(x > h / 3 && y > h / 3);
+    return (is_in ? height : 0) + bump(x, y, bulge);
+  };
+}
+
+int count(const Relief& relief, bool is_wall) {
+  return static_cast<int>(std::count_if(
+      relief.parts.begin(), relief.parts.end(),
+      [&](const Relief::Part& p) { return p.is_wall == is_wall && !p.rings.empty(); }));
+}
+
+Source named(Mesh mesh) {
+  Source source;
+  source.name = source.given_name = "house";
+  source.mesh = std::move(mesh);
+  return source;
+}
+
+}  // namespace
+
+TEST_CASE("a melted hall is its walls and one roof, at any size and density") {
+  struct Case {
+    double size, edge, bulge;
+  };
+  for (const Case c : {Case{12, 0.3, 0.08}, {30, 0.5, 0.1}, {30, 1.5, 0.15}, {120, 1.2, 0.15}}) {
+    INFO(c.size << " m, edges of " << c.edge);
+    const auto relief = find_relief(field(c.size + 4, c.edge, ell(c.size, 8, c.bulge)));
+    REQUIRE(relief);
+    CHECK(count(*relief, false) == 1);
+    CHECK(count(*relief, true) == 6);
+    CHECK(relief->foot == Approx(0).margin(2 * c.bulge));
+    for (const Relief::Part& p : relief->parts) {
+      if (p.rings.empty()) continue;
+      CHECK(p.normal.z() == Approx(p.is_wall ? 0 : 1).margin(1e-9));
+      if (!p.is_wall) CHECK(p.offset == Approx(8).margin(c.bulge));
+    }
+  }
+}
+
+TEST_CASE("its layers are closed, upright, few, and hold its volume") {
+  for (const double size : {14.0, 40.0}) {
+    INFO(size);
+    Options options;
+    options.ns = 40;
+    const Scene scene =
+        build_scene({{named(field(size + 4, 0.6, ell(size, 9, 0.1)))}, {}}, options);
+    REQUIRE(scene.buildings.size() == 1);
+    const Building& b = scene.buildings[0];
+    REQUIRE(b.failure.empty());
+    const double volume = 9 * size * size * (1 - 1.0 / 9);
+    for (const Layer& layer : b.layers) {
+      CHECK(layer.validity.is_watertight);
+      CHECK(layer.mesh.facets.size() <= 12);  // eight, and half as many again
+      CHECK(signed_volume(layer.mesh.mesh()) == Approx(volume).epsilon(0.05));
+      for (const PolygonMesh::Facet& f : layer.mesh.facets)
+        CHECK((std::abs(f.normal.z()) < 0.01 || std::abs(f.normal.z()) > 0.99));
+    }
+  }
+}
+
+TEST_CASE("a pitched roof is two slopes of one tilt with a level ridge") {
+  const auto house = [](double x, double y) {
+    const bool is_in = std::abs(x) < 8 && std::abs(y) < 5;
+    return (is_in ? 6 + 0.7 * (5 - std::abs(y)) : 0) + bump(x, y, 0.08);
+  };
+  const auto relief = find_relief(field(20, 0.4, house));
+  REQUIRE(relief);
+  std::vector<Vec3> normals;
+  for (const Relief::Part& p : relief->parts)
+    if (!p.is_wall && !p.rings.empty()) normals.push_back(p.normal);
+  REQUIRE(normals.size() == 2);
+  CHECK(normals[0].z() == Approx(normals[1].z()));
+  CHECK((normals[0].head<2>() + normals[1].head<2>()).norm() < 1e-6);
+  CHECK(std::atan(normals[0].head<2>().norm() / normals[0].z()) ==
+        Approx(std::atan(0.7)).margin(0.05));
+}
+
+TEST_CASE("what stands around is left out, and told") {
+  const auto garden = [](double x, double y) {
+    const bool is_in = std::abs(x) < 6 && std::abs(y) < 6;
+    const double crown = 4 - 1.5 * std::hypot(x - 9.5, y - 2);  // of a tree
+    return (is_in ? 7 : std::max(0.0, crown) + bump(3 * x, 3 * y, 0.1)) + bump(x, y, 0.06);
+  };
+  const Mesh mesh = field(24, 0.4, garden);
+  const auto relief = find_relief(mesh);
+  REQUIRE(relief);
+  CHECK(count(*relief, false) == 1);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Vec3& v = mesh.vertices[mesh.faces[f][0]];
+    const double out = std::max(std::abs(v.x()), std::abs(v.y()));
+    if (out > 7.5) CHECK(relief->is_left_out[f]);
+    if (out < 5) CHECK(!relief->is_left_out[f]);
+  }
+}
+
+TEST_CASE("a low roof between higher neighbours is no ground") {
+  const auto court = [](double x, double y) {
+    const double roof = std::abs(x) < 7 ? 4 : 11;  // strips of next door on two sides
+    return (std::abs(y) < 9 ? roof : 0) + bump(x, y, 0.06);
+  };
+  Mesh mesh = field(20, 0.4, court);
+  for (Vec3& v : mesh.vertices) v.x() *= 16.0 / 20;  // the cut-out ends in these strips
+  const auto relief = find_relief(mesh);
+  REQUIRE(relief);
+  CHECK(relief->foot == Approx(0).margin(0.3));
+}
+
+TEST_CASE("what is known more exactly than its relief is none") {
+  CHECK(!find_relief(test::box_mesh({0, 0, 0}, {10, 8, 6})));
+  CHECK(!find_relief(field(16, 0.4, [](double, double) { return 5.0; })));
+  CHECK(!find_relief(test::noisy_corner(10, 6, 0.02)));  // leans both ways, as scans do
+  CHECK(!find_relief(Mesh{}));
+}
