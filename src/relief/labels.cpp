@@ -175,28 +175,48 @@ class Labeller {
     label_.swap(next);
   }
 
-  /// Parts of the building that stand apart and are small, are not of it.
-  void drop_islands() {
+  struct Island {
+    int cells = 0;
+    double rise = 0;  ///< metres: sum over its cells
+    double mean_rise() const { return rise / cells; }
+  };
+
+  /// Which connected part of the building each cell is of; −1: none.
+  std::vector<int> find_islands(std::vector<Island>& islands) const {
     std::vector<int> island(f_.size(), -1);
-    std::vector<int> count;
     for (int seed = 0; seed < f_.size(); ++seed) {
       if (label_[seed] < 0 || island[seed] >= 0) continue;
-      const int id = static_cast<int>(count.size());
+      const int id = static_cast<int>(islands.size());
       std::vector<int> open{seed};
       island[seed] = id;
-      count.push_back(0);
+      islands.emplace_back();
       while (!open.empty()) {
         const int i = open.back();
         open.pop_back();
-        ++count.back();
+        ++islands.back().cells;
+        islands.back().rise += height(label_[i], i) - ground_.height[i];
         for (const int j : f_.beside(i))
           if (j >= 0 && label_[j] >= 0 && island[j] < 0) island[j] = id, open.push_back(j);
       }
     }
-    if (count.empty()) return;
-    const double most = *std::max_element(count.begin(), count.end());
+    return island;
+  }
+
+  /// Parts that stand apart and are small, or so low that they are no building, are not of it.
+  void drop_islands() {
+    std::vector<Island> islands;
+    const std::vector<int> island = find_islands(islands);
+    if (islands.empty()) return;
+    const Island& main =
+        *std::max_element(islands.begin(), islands.end(),
+                          [](const Island& a, const Island& b) { return a.cells < b.cells; });
+    const auto is_dropped = [&](const Island& i) {
+      const bool is_low =
+          i.mean_rise() < kLowIsland && i.mean_rise() < kLowIslandShare * main.mean_rise();
+      return i.cells < kIsland * main.cells || (is_low && &i != &main);
+    };
     for (int i = 0; i < f_.size(); ++i)
-      if (island[i] >= 0 && count[island[i]] < kIsland * most) label_[i] = kOutside;
+      if (island[i] >= 0 && is_dropped(islands[island[i]])) label_[i] = kOutside;
   }
 
   const Field& f_;

@@ -57,7 +57,8 @@ constexpr double kSlideSpan = 0.8;   // … up to so many bumps on each side
 constexpr double kLeastPatch = 1.5;  // bumps' squares
 constexpr int kSmoothings = 4;
 constexpr double kMostOff = 9;    // squared, in noise: more is as bad
-constexpr double kIsland = 0.05;  // of the largest part
+constexpr double kIsland = 0.05;  // of the largest part: one that stands apart and is of it
+constexpr double kLowIsland = 3, kLowIslandShare = 0.5;  // metres, and of its height: likewise
 
 // Borders.
 constexpr double kSpread = 0.07;       // radians (4°) that pieces of one direction spread

@@ -15,15 +15,15 @@ namespace {
 
 using Heights = std::function<double(double x, double y)>;
 
-/// The surface over a square of side `side`, in triangles of about `edge`: walls lean by one of
-/// them.
+/// The surface over a square of side `side`, in uneven triangles of about `edge`: walls lean by one
+/// of them.
 Mesh field(double side, double edge, const Heights& height) {
   const int n = static_cast<int>(std::ceil(side / edge));
   Mesh m;
   for (int r = 0; r <= n; ++r)
     for (int c = 0; c <= n; ++c) {
-      const double x = side * (static_cast<double>(c) / n - 0.5);
-      const double y = side * (static_cast<double>(r) / n - 0.5);
+      const double x = side * ((c + 0.2 * std::sin(37.0 * r + 11.0 * c)) / n - 0.5);
+      const double y = side * ((r + 0.2 * std::sin(23.0 * r + 53.0 * c)) / n - 0.5);
       m.vertices.emplace_back(x, y, height(x, y));
     }
   for (int r = 0; r < n; ++r)
