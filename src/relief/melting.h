@@ -6,12 +6,12 @@
 namespace colod::relief {
 
 struct Melting {
-  double edge = 0;        ///< metres: median edge
-  double bulge = 0;       ///< metres: residual of a piece of wall or roof as wide as a window
-  double looks_down = 0;  ///< 0..1 of the area of walls: of a height field nothing does
+  double edge = 0;   ///< metres: median edge
+  double bulge = 0;  ///< metres: residual of a piece of wall or roof as wide as a window
+  double lean = 0;   ///< z of the walls' outward normals, their mean: noise leans both ways
 
-  /// Walls lean outward everywhere: drawn from heights, or from pictures taken from above.
-  bool is_height_field() const;
+  /// Walls lean outward: drawn from heights, or from pictures that were taken from above.
+  bool is_leaning() const;
   /// Windows and dormers are no larger than what the mesh cannot tell.
   bool is_coarse() const;
   bool is_melted() const;

@@ -11,9 +11,9 @@ std::vector<Parameter> melted_numbers() {
   return {
       {"exact_bulge", "m", relief::kExactBulge,
        "residual of the flattest quarter of all pieces of wall and roof: less is exact"},
-      {"field_looks_down", "", relief::kFieldLooksDown,
-       "share of the walls that looks down: a height field has none, scans from the street a third "
-       "and more"},
+      {"least_lean", "", relief::kLeastLean,
+       "z of the walls' normals, their mean: scans from the street have at most 0.03, since noise "
+       "leans both ways, drones' 0.04 and more"},
       {"coarse_bulge", "m", relief::kCoarseBulge,
        "of meshes that are none: scans from the street have 0.024 and less"},
       {"coarse", "m", relief::kCoarse, "median edge, or four bulges: windows cannot be told"},
@@ -45,9 +45,9 @@ RuleInfo melted_rule() {
       .id = "relief.melted",
       .title = "a melted mesh is read as roofs and upright walls",
       .sees =
-          "Meshes of which no more than the relief is known: height fields, whose walls lean "
-          "outward everywhere, and meshes so coarse or bulging that windows cannot be told, if "
-          "roofs and walls explain them.",
+          "Meshes of which no more than the relief is known: those whose walls lean outward, as "
+          "heights and pictures from above give them, and those so coarse or bulging that windows "
+          "cannot be told, if roofs and walls explain them.",
       .does =
           "Draws the mesh as heights, parts the ground around, joins neighbouring pieces of roof "
           "while a plane explains less than it costs, draws borders onto few lines of few "

@@ -66,11 +66,12 @@ Source named(Mesh mesh) {
 
 TEST_CASE("a melted hall is its walls and one roof, at any size and density") {
   struct Case {
-    double size, edge, bulge;
+    double size, height, edge, bulge;
   };
-  for (const Case c : {Case{12, 0.3, 0.08}, {30, 0.5, 0.1}, {30, 1.5, 0.15}, {120, 1.2, 0.15}}) {
+  for (const Case c :
+       {Case{12, 5, 0.3, 0.08}, {30, 8, 0.5, 0.1}, {30, 8, 1.5, 0.15}, {120, 8, 1.2, 0.15}}) {
     INFO(c.size << " m, edges of " << c.edge);
-    const auto relief = find_relief(field(c.size + 4, c.edge, ell(c.size, 8, c.bulge)));
+    const auto relief = find_relief(field(c.size + 4, c.edge, ell(c.size, c.height, c.bulge)));
     REQUIRE(relief);
     CHECK(count(*relief, false) == 1);
     CHECK(count(*relief, true) == 6);
@@ -78,7 +79,7 @@ TEST_CASE("a melted hall is its walls and one roof, at any size and density") {
     for (const Relief::Part& p : relief->parts) {
       if (p.rings.empty()) continue;
       CHECK(p.normal.z() == Approx(p.is_wall ? 0 : 1).margin(1e-9));
-      if (!p.is_wall) CHECK(p.offset == Approx(8).margin(c.bulge));
+      if (!p.is_wall) CHECK(p.offset == Approx(c.height).margin(c.bulge));
     }
   }
 }
