@@ -47,7 +47,8 @@ std::vector<char> flood(const Field& f, const std::vector<int>& rim, double low,
   std::vector<char> is_ground(f.size(), 0);
   std::vector<int> open;
   for (const int i : rim)
-    if (f.height[i] < low + kRimShare * rise) is_ground[i] = 1, open.push_back(i);
+    if (f.height[i] < low + std::min(kRimShare * rise, kRimRise))
+      is_ground[i] = 1, open.push_back(i);
   while (!open.empty()) {
     const int i = open.back();
     open.pop_back();

@@ -115,7 +115,7 @@ class Labeller {
       const bool is_strip = s.half_width < kStrip && s.at_nothing > kStripShare * s.border;
       const bool is_minor = p.area < kMinor * total;
       becomes[a] = static_cast<int>(a);
-      if (is_minor && is_strip) becomes[a] = kOutside;
+      if (is_strip && p.area < kStripArea * total) becomes[a] = kOutside;
       if (is_minor && is_rough) becomes[a] = s.at_ground > 0.5 * s.border ? kOutside : kOpen;
       const bool is_slide =
           p.slope.norm() > kSlide && s.half_width < std::max(kStrip, kSlideSpan * span_);

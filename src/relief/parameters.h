@@ -35,7 +35,8 @@ constexpr double kLeastTolerance = 0.45, kMostTolerance = 0.8;  // … between t
 // The ground around.
 constexpr double kLowRim = 0.05, kHighRoof = 0.9;  // quantiles of heights
 constexpr double kLeastRise = 2;                   // metres between them: a building
-constexpr double kRimShare = 0.35;    // of that rise: what is lower at the rim is ground …
+constexpr double kRimShare = 0.35;                 // of that rise, or …
+constexpr double kRimRise = 1.5;      // … metres: what is lower at the rim is ground …
 constexpr double kGroundShare = 0.5;  // … as is what is reached from there, at most so high
 constexpr double kGroundSlope = 1;    // metres a metre that the ground may climb
 constexpr double kLeastFeet = 3;      // metres of wall that stand on it
@@ -52,6 +53,7 @@ constexpr double kMinor = 0.15;       // of all patches' area: what may be no pa
 constexpr double kThin = 0.45;        // metres of half its width: a parapet, or a crest of noise
 constexpr double kStrip = 0.9;        // metres of half its width: next door's …
 constexpr double kStripShare = 0.35;  // … if so much of its border is where the mesh ends
+constexpr double kStripArea = 0.4;    // of all patches' area: next door is no more than this
 constexpr double kSlide = 0.85;      // metres a metre (40°): a strip so steep is a melted wall …
 constexpr double kSlideSpan = 0.8;   // … up to so many bumps on each side
 constexpr double kLeastPatch = 1.5;  // bumps' squares
