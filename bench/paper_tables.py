@@ -58,7 +58,8 @@ def sources(a, name):
 
 def build(a, files, out, *options):
     """report.json and the run's processor seconds; finished runs with the same options are taken as they are."""
-    command = [a.colod, "build", *map(str, files), "-o", str(out), "--ns", str(a.ns), "--format", "ply", "--quiet", "--no-report-html", *map(str, options)]
+    ns = [] if "--ns" in options else ["--ns", str(a.ns)]
+    command = [a.colod, "build", *map(str, files), "-o", str(out), *ns, "--format", "ply", "--quiet", "--no-report-html", *map(str, options)]
     mark = out / "command.json"
     if mark.exists() and json.loads(mark.read_text())["command"] == command:
         return json.loads((out / "report.json").read_text()), json.loads(mark.read_text())["seconds"]
