@@ -290,7 +290,13 @@ void run(const std::string& peer, const std::string& path, const std::string& ou
   write_off(out, compact(result), origin);
 }
 
-nlohmann::ordered_json measure(const DistanceGauge& gauge, const LightFields* own,
+/// How the source looks, by both descriptions.
+struct Looks {
+  LightFields fields;
+  ProgramLightFields program;
+};
+
+nlohmann::ordered_json measure(const DistanceGauge& gauge, const Looks* own,
                                const std::string& path) {
   const Mesh model = read_single(path).mesh;
   const Validity v = check_validity(model);
@@ -308,15 +314,20 @@ nlohmann::ordered_json measure(const DistanceGauge& gauge, const LightFields* ow
                               {"hausdorff_relative", d.relative},
                               {"mean_distance", d.mean_a_to_b},
                               {"mean_distance_back", d.mean_b_to_a}};
-  if (own) json["light_field_distance"] = light_field_distance(*own, describe_light_fields(model));
+  if (own) {
+    json["light_field_distance"] = light_field_distance(own->fields, describe_light_fields(model));
+    json["light_field_distance_program"] =
+        light_field_distance(own->program, describe_as_program(model));
+  }
   return json;
 }
 
 void measure_all(const std::string& path, const std::vector<std::string>& models) {
   const Source source = read_building(path);
   const DistanceGauge gauge(source);
-  std::optional<LightFields> own;
-  if (source.is_mesh()) own = describe_light_fields(source.mesh);
+  std::optional<Looks> own;
+  if (source.is_mesh())
+    own = Looks{describe_light_fields(source.mesh), describe_as_program(source.mesh)};
   nlohmann::ordered_json json = {{"diagonal", diagonal_of(source)},
                                  {"models", nlohmann::json::array()}};
   for (const std::string& model : models) {

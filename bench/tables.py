@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs colod on folders of buildings under both rules and prints the tables of docs/rules.md as Markdown.
 
-usage: tables.py --colod build/release/colod [--ns 60] [--rules robust,paper] [--out FOLDER] NAME=PATH...
-Each NAME=PATH is a scene: a file or a folder given to `colod build`.
+usage: tables.py --colod build/release/colod [--ns 60] [--rules robust,paper,paper:20] [--out FOLDER] NAME=PATH...
+paper:20 are the paper's rules with an A_eps of 20 m². Each NAME=PATH is a scene: a file or a folder given to `colod build`.
 """
 import argparse
 import json
@@ -24,7 +24,9 @@ def machine():
 
 
 def build(colod, path, rules, ns, out):
-    command = [colod, "build", path, "-o", out, "--rules", rules, "--ns", str(ns), "--quiet", "--format", "glb"]
+    name, _, alcove_area = rules.partition(":")
+    command = [colod, "build", path, "-o", out, "--rules", name, "--ns", str(ns), "--quiet", "--format", "glb", "--no-report-html"]
+    command += ["--alcove-area", alcove_area] if alcove_area else []
     result = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
     report = pathlib.Path(out) / "report.json"
     return result.returncode, json.loads(report.read_text()) if report.exists() else None

@@ -1,5 +1,5 @@
-// *Based on:* nothing published; sizes are drawn evenly in their logarithm, for every kind over
-// ranges that overlap with all other kinds'.
+// *Based on:* nothing published; sizes are drawn evenly in their logarithm, for every kind in three
+// makes whose longest sides span about the same metres as all other kinds'.
 //
 // *Differs:* no --rules here.
 //
@@ -41,27 +41,28 @@ SizedPool::SizedPool(std::uint64_t street) {
   for (int i = 0; i < kSizes; ++i) {
     const std::string size = kSizeNames[i];
     const auto any = [&] { return r.pick(kSizes); };
-    windows.push_back({"window" + size, sized(r, 0.4, 2.3, i), sized(r, 0.4, 2.3, any()),
-                       sized(r, 0.06, 1.1, (i + 1) % kSizes), i, r.chance(0.5), false});
-    arched.push_back({"window_arched" + size, sized(r, 0.5, 1.6, i), sized(r, 1.2, 3.4, i),
-                      sized(r, 0.08, 0.4, i), 0, false, true});
-    doors.push_back({"door" + size, sized(r, 0.6, 2.3, i), sized(r, 1.0, 3.0, any()),
-                     sized(r, 0.06, 1.1, (i + 2) % kSizes)});
+    const int other = (i + 1) % kSizes, last = (i + 2) % kSizes;  // deep ones are not the wide ones
+    windows.push_back({"window" + size, sized(r, 0.6, 3.0, i), sized(r, 0.7, 2.2, i),
+                       sized(r, 0.12, 0.55, other), i, r.chance(0.5), false});
+    arched.push_back({"window_arched" + size, sized(r, 0.6, 1.8, i), sized(r, 1.2, 3.0, i),
+                      sized(r, 0.12, 0.45, other), 0, false, true});
+    doors.push_back(
+        {"door" + size, sized(r, 0.8, 3.0, i), sized(r, 1.9, 2.9, i), sized(r, 0.12, 0.55, last)});
     french.push_back({"door_french" + size, r.size(0.45, 0.8), sized(r, 1.25, 2.3, i),
-                      sized(r, 0.06, 0.9, (i + 2) % kSizes)});
-    balconies.push_back({"balcony" + size, sized(r, 0.9, 4.0, i),
-                         sized(r, 0.3, 1.8, kSizes - 1 - i), sized(r, 0.35, 1.1, i)});
+                      sized(r, 0.12, 0.55, last)});
+    balconies.push_back({"balcony" + size, sized(r, 0.9, 3.2, i),
+                         sized(r, 0.6, 1.2, kSizes - 1 - i), sized(r, 0.45, 1.1, i)});
     for (bool is_shed : {false, true})
       dormers.push_back({(is_shed ? "dormer_shed" : "dormer_gabled") + size, is_shed,
-                         sized(r, 0.85, 3.4, i), sized(r, 0.75, 1.7, i)});
+                         sized(r, 0.9, 3.0, i), sized(r, 0.8, 1.6, i)});
     chimneys.push_back(
-        {"chimney" + size, sized(r, 0.35, 2.4, i), sized(r, 0.35, 1.5, i), sized(r, 0.4, 3.2, i)});
-    const double bay = sized(r, 0.9, 3.6, i);
-    bays.push_back({"bay" + size, bay, sized(r, 0.25, 1.2, i), r.chance(0.5) ? 0 : 0.15 * bay});
+        {"chimney" + size, sized(r, 0.4, 2.2, i), sized(r, 0.4, 1.1, i), sized(r, 0.5, 2.8, i)});
+    const double bay = sized(r, 1.0, 3.0, i);
+    bays.push_back({"bay" + size, bay, sized(r, 0.4, 1.0, i), r.chance(0.5) ? 0 : 0.15 * bay});
     loggias.push_back(
-        {"loggia" + size, sized(r, 1.2, 4.0, i), r.size(2.2, 2.4), sized(r, 0.3, 1.6, i)});
-    ornaments.push_back({"ornament" + size, sized(r, 0.3, 3.0, i), sized(r, 0.3, 3.0, any()),
-                         sized(r, 0.06, 1.3, (i + 1) % kSizes)});
+        {"loggia" + size, sized(r, 1.2, 3.2, i), r.size(2.2, 2.4), sized(r, 0.55, 1.3, i)});
+    ornaments.push_back({"ornament" + size, sized(r, 0.5, 3.0, i), sized(r, 0.5, 3.0, i),
+                         sized(r, 0.1, 0.9, other)});
   }
 }
 

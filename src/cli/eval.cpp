@@ -24,12 +24,10 @@ struct EvalArguments {
   int threads = 0;
 };
 
-int light_fields_apart(const Source& reference, const Source& model) {
+void need_silhouettes(const Source& reference, const Source& model) {
   for (const Source* s : {&reference, &model})
     if (!s->is_mesh())
       throw Error(Stage::kInput, s->name, "points have no silhouette: --lfd compares two meshes");
-  return light_field_distance(describe_light_fields(reference.mesh),
-                              describe_light_fields(model.mesh));
 }
 
 using Json = nlohmann::ordered_json;
@@ -122,7 +120,13 @@ int eval(const EvalArguments& a) {
       {"mean_distance_back", d.mean_b_to_a},
       {"rms_distance", d.rms_a_to_b},
       {"samples", a.distance.samples}};
-  if (a.has_lfd) json["light_field_distance"] = light_fields_apart(reference, model);
+  if (a.has_lfd) {
+    need_silhouettes(reference, model);
+    json["light_field_distance"] = light_field_distance(describe_light_fields(reference.mesh),
+                                                        describe_light_fields(model.mesh));
+    json["light_field_distance_program"] =
+        light_field_distance(describe_as_program(reference.mesh), describe_as_program(model.mesh));
+  }
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }

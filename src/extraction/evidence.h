@@ -19,7 +19,7 @@ struct Evidence {
 };
 
 struct VoteOptions {
-  bool is_on_rings = true;  ///< Rule::kRings; else over the sphere, from the centroid alone
+  bool is_on_rings = true;  ///< Rule::kRings; else level, from the centroid alone
   int nr = 100;
 };
 

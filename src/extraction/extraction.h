@@ -17,8 +17,8 @@
 namespace colod {
 
 struct ExtractionOptions {
-  RuleSet rules = RuleSet::all();  ///< none: rays over the sphere, more than half of n_r, no
-                                   ///< min-cut, no base and no rectangle
+  RuleSet rules = RuleSet::all();  ///< none: whole planes, level rays, more than half of
+                                   ///< n_r, no min-cut, no base and no rectangle
   int nr = 100;
   double growth = 0.1;      ///< metres an outline's hull reaches beyond the outline
   double smoothness = 0.4;  ///< robust: weight of facet area in the min-cut

@@ -13,19 +13,21 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/rays.h"
+#include "light_field_views.h"
 
 namespace colod {
 namespace {
 
+using namespace light_fields;
+
 using Axes = std::array<Vec3, kViewCount>;
-using Permutation = std::array<int, kViewCount>;
 
 constexpr int kCandidates = 2048;  // of orientations
 constexpr int kRotations = 60;
 
 /// One unit vector of each pair of opposite vertices.
 Axes dodecahedron_axes() {
-  constexpr double p = std::numbers::phi, q = 1 / std::numbers::phi;
+  const double p = std::numbers::phi, q = 1 / std::numbers::phi;
   Axes axes = {Vec3(1, 1, 1),  Vec3(1, 1, -1), Vec3(1, -1, 1), Vec3(-1, 1, 1), Vec3(0, q, p),
                Vec3(0, q, -p), Vec3(q, p, 0),  Vec3(q, -p, 0), Vec3(p, 0, q),  Vec3(p, 0, -q)};
   for (Vec3& a : axes) a.normalize();
@@ -60,9 +62,9 @@ std::vector<Eigen::Matrix3d> spread_orientations() {
   for (const Eigen::Matrix3d& r : dodecahedron_rotations()) own.emplace_back(r);
   std::vector<Eigen::Quaterniond> candidates = {Eigen::Quaterniond::Identity()};
   for (int i = 0; i < kCandidates; ++i) {
-    constexpr double psi = 1.533751168755204288118;  // of the spiral: ψ⁴ = ψ + 4
+    constexpr double kPsi = 1.533751168755204288118;  // of the spiral: ψ⁴ = ψ + 4
     const double s = (i + 0.5) / kCandidates, turns = 2 * std::numbers::pi * (i + 0.5);
-    const double a = turns / std::numbers::sqrt2, b = turns / psi;
+    const double a = turns / std::numbers::sqrt2, b = turns / kPsi;
     const double r = std::sqrt(s), t = std::sqrt(1 - s);
     candidates.emplace_back(t * std::cos(b), r * std::sin(a), r * std::cos(a), t * std::sin(b));
   }
@@ -152,38 +154,42 @@ std::vector<Eigen::Matrix3d> dodecahedron_rotations() {
   return rotations;
 }
 
-LightFields describe_light_fields(const Mesh& mesh) {
+namespace light_fields {
+
+std::vector<Silhouette> cast_silhouettes(const Mesh& mesh) {
   const Bounds bounds = bounds_of(mesh);
   const RayScene scene(mesh);
   const Axes axes = dodecahedron_axes();
   const std::vector<Eigen::Matrix3d> orientations = spread_orientations();
+  std::vector<Silhouette> silhouettes(std::size_t{kLightFieldCount} * kViewCount);
+  parallel_for(silhouettes.size(), [&](std::size_t i) {
+    silhouettes[i] =
+        cast_silhouette(scene, bounds, orientations[i / kViewCount] * axes[i % kViewCount]);
+  });
+  return silhouettes;
+}
+
+std::vector<Permutation> view_permutations() {
+  const Axes axes = dodecahedron_axes();
+  std::vector<Permutation> permutations;
+  for (const Eigen::Matrix3d& r : dodecahedron_rotations())
+    permutations.push_back(permutation_of(axes, r));
+  return permutations;
+}
+
+}  // namespace light_fields
+
+LightFields describe_light_fields(const Mesh& mesh) {
+  const std::vector<Silhouette> silhouettes = cast_silhouettes(mesh);
   LightFields result;
-  parallel_for(std::size_t{kLightFieldCount} * kViewCount, [&](std::size_t i) {
-    const std::size_t field = i / kViewCount, view = i % kViewCount;
-    const Vec3 direction = orientations[field] * axes[view];
-    result.views[field][view] = describe(cast_silhouette(scene, bounds, direction));
+  parallel_for(silhouettes.size(), [&](std::size_t i) {
+    result.views[i / kViewCount][i % kViewCount] = describe(silhouettes[i]);
   });
   return result;
 }
 
 int light_field_distance(const LightFields& a, const LightFields& b) {
-  const Axes axes = dodecahedron_axes();
-  std::vector<Permutation> permutations;
-  for (const Eigen::Matrix3d& r : dodecahedron_rotations())
-    permutations.push_back(permutation_of(axes, r));
-  int best = std::numeric_limits<int>::max();
-  for (const auto& field_a : a.views)
-    for (const auto& field_b : b.views) {
-      std::array<std::array<int, kViewCount>, kViewCount> table;
-      for (int i = 0; i < kViewCount; ++i)
-        for (int j = 0; j < kViewCount; ++j) table[i][j] = difference(field_a[i], field_b[j]);
-      for (const Permutation& to : permutations) {
-        int sum = 0;
-        for (int i = 0; i < kViewCount; ++i) sum += table[i][to[i]];
-        best = std::min(best, sum);
-      }
-    }
-  return best;
+  return least_distance(a, b, difference);
 }
 
 }  // namespace colod

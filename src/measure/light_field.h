@@ -12,11 +12,13 @@
 // model), the moments (order 1 to 10, magnitude of the mean of the Zernike polynomial over the
 // silhouette, about its centroid, out to its farthest pixel), the Fourier coefficients (of the
 // distance from the centroid along the outer contour, over the 0th), and the 8 bits (256 steps over
-// 0..1 for moments, over 0..0.5 for Fourier coefficients, as in the authors' program). That program
-// takes the angular radial transform for the moments and adds circularity and eccentricity; so our
-// numbers have the paper's scale but are not the program's. 0: no difference is seen; largest
-// possible: 10 · 45 · 255 = 114,750; a box against a sphere is some thousands. Small details hardly
-// count: this is a measure of the outline from all sides.
+// 0..1 for moments, over 0..0.5 for Fourier coefficients, as in the authors' program). 0: no
+// difference is seen; largest possible: 10 · 45 · 255 = 114,750; a box against a sphere is some
+// thousands. Small details hardly count: this is a measure of the outline from all sides.
+//
+// That program, from which most published numbers are, takes 35 coefficients of the angular radial
+// transform for the moments, adds circularity and eccentricity, and counts Fourier coefficients and
+// circularity twice: ProgramLightFields, to be set beside those numbers.
 #pragma once
 
 #include <array>
@@ -36,6 +38,15 @@ constexpr int kLightFieldCount = 10;  ///< light fields a model
 using Silhouette = std::vector<char>;
 using ViewDescriptor = std::array<std::uint8_t, kZernikeCount + kFourierCount>;
 
+constexpr int kRadialTransformCount = 35;
+constexpr int kProgramCount = kRadialTransformCount + kFourierCount + 2;
+/// Radial transform, Fourier coefficients, circularity, eccentricity.
+using ProgramDescriptor = std::array<std::uint8_t, kProgramCount>;
+
+struct ProgramLightFields {
+  std::array<std::array<ProgramDescriptor, kViewCount>, kLightFieldCount> views{};
+};
+
 struct LightFields {
   std::array<std::array<ViewDescriptor, kViewCount>, kLightFieldCount> views{};
 };
@@ -50,6 +61,11 @@ std::array<double, kFourierCount> fourier_magnitudes(const Silhouette& silhouett
 /// with an area, else Error. Deterministic, runs in parallel: about 0.5 s on two cores.
 LightFields describe_light_fields(const Mesh& mesh);
 int light_field_distance(const LightFields& a, const LightFields& b);
+
+/// Likewise, as the authors' program describes and compares them (light_field_program.cpp says what
+/// differs).
+ProgramLightFields describe_as_program(const Mesh& mesh);
+int light_field_distance(const ProgramLightFields& a, const ProgramLightFields& b);
 
 /// The 60 rotations that map the dodecahedron of the views onto itself.
 std::vector<Eigen::Matrix3d> dodecahedron_rotations();

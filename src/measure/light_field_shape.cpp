@@ -12,28 +12,18 @@
 #include <numbers>
 
 #include "light_field.h"
+#include "light_field_views.h"
 
 namespace colod {
 namespace {
 
+using namespace light_fields;
+
 constexpr int kSize = kSilhouetteSize;
 constexpr int kOrder = 10;
 
-struct Pixel {
-  int x, y;
-  bool operator==(const Pixel&) const = default;
-};
-
 bool is_covered(const Silhouette& s, Pixel p) {
   return p.x >= 0 && p.y >= 0 && p.x < kSize && p.y < kSize && s[p.y * kSize + p.x];
-}
-
-std::vector<Pixel> covered_pixels(const Silhouette& s) {
-  std::vector<Pixel> pixels;
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      if (s[y * kSize + x]) pixels.push_back({x, y});
-  return pixels;
 }
 
 /// Coefficient of r^(n − 2s) in R(n, m).
@@ -109,6 +99,22 @@ std::vector<Pixel> trace_contour(const Silhouette& s) {
 
 }  // namespace
 
+namespace light_fields {
+
+std::vector<Pixel> covered_pixels(const Silhouette& s) {
+  std::vector<Pixel> pixels;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (s[y * kSize + x]) pixels.push_back({x, y});
+  return pixels;
+}
+
+std::vector<Pixel> outer_contour(const Silhouette& silhouette) {
+  return trace_contour(largest_part(silhouette));
+}
+
+}  // namespace light_fields
+
 std::array<double, kZernikeCount> zernike_magnitudes(const Silhouette& silhouette) {
   assert(silhouette.size() == std::size_t{kSize} * kSize);
   std::array<double, kZernikeCount> magnitudes{};
@@ -147,7 +153,7 @@ std::array<double, kZernikeCount> zernike_magnitudes(const Silhouette& silhouett
 std::array<double, kFourierCount> fourier_magnitudes(const Silhouette& silhouette) {
   assert(silhouette.size() == std::size_t{kSize} * kSize);
   std::array<double, kFourierCount> magnitudes{};
-  const std::vector<Pixel> contour = trace_contour(largest_part(silhouette));
+  const std::vector<Pixel> contour = outer_contour(silhouette);
   const std::size_t n = contour.size();
   if (n < 3) return magnitudes;
   // Per pixel half of the steps to its two neighbours, and its middle along the contour.

@@ -1,9 +1,8 @@
 // Based on: Co-LOD section 3.3 (Binary Space Partition of the bounding box by a layer's planes);
 //   adaptive cutting as in Chen, Ledoux, Khademi and Nan, "Reconstructing compact building models
 //   from point clouds using deep implicit fields", 2022.
-// Differs: the paper does not say which cells a plane cuts. Here it cuts the cells that the grown
-// hull
-//   of its outline reaches (both rules: whole planes gave 50 times the cells at 2,400 planes), in
+// Differs: the paper does not say which cells a plane cuts. Here one with a hull
+//   cuts the cells that it reaches (whole planes gave 50 times the cells at 2,400 planes), in
 //   the order given, exactly. Whether a hull reaches a cell is a choice, made in doubles with a
 //   tolerance; what a cut does is decided by integers alone (predicates.cpp).
 // Notation: node inner node or leaf of the tree; a leaf is a cell; ring polygon with labelled

@@ -1,5 +1,5 @@
 // Based on: own work.
-// Differs: the same under both rules, but that nothing is refused under the paper's.
+// Differs: paper rules measure, but refuse nothing and replace no layer.
 // Notation: none.
 #include "losses.h"
 
@@ -117,7 +117,7 @@ void weigh_finest(const Surface& source, Building& b) {
   }
 }
 
-void replace_invented(const Surface& source, Building& b) {
+void replace_invented(const Surface& source, bool is_replaced, Building& b) {
   std::vector<Mesh> meshes;
   std::vector<Layer*> shown;
   for (Layer& layer : b.layers)
@@ -126,7 +126,7 @@ void replace_invented(const Surface& source, Building& b) {
   const std::vector<InventedShare> shares = invented_shares(source, meshes);
   for (std::size_t i = shown.size(); i-- > 0;) {
     shown[i]->invented = shares[i].share;
-    if (!shares[i].is_too_much || i + 1 == shown.size()) continue;
+    if (!is_replaced || !shares[i].is_too_much || i + 1 == shown.size()) continue;
     shown[i]->mesh = shown[i + 1]->mesh;
     shown[i]->invented = shown[i + 1]->invented;
     shown[i]->stand_in = StandIn::kInvented;

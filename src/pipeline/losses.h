@@ -17,9 +17,9 @@ void weigh_finest(const Surface& source, Building& building);
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
-/// Measures how much of each layer is invented; where it is too much (measure/scene_part.h) the
-/// next finer layer's mesh stands in.
-void replace_invented(const Surface& source, Building& building);
+/// Measures how much of each layer is invented; where it is too much (measure/scene_part.h) and
+/// `is_replaced`, the next finer layer's mesh stands in.
+void replace_invented(const Surface& source, bool is_replaced, Building& building);
 
 /// Why the finest layer is no building's (measure/scene_part.h); empty: it is one.
 std::string judge_building(const Surface& source, const Building& building);

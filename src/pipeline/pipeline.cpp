@@ -377,7 +377,7 @@ void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
       forget_losses(b);
       return;
     }
-    replace_invented(surface, b);
+    replace_invented(surface, options.rules.has(Rule::kVolume), b);
     const DistanceGauge source(b.source, {}, parted(b.planes));
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, layer);

@@ -1,5 +1,5 @@
-// Based on: the paper's α-shape per plane (section 3.1). Differs: a mesh knows its surface, so the
-// outline is the exact union of its projected faces under both rules; the α-shape serves clouds.
+// Based on: the paper's α-shape per plane (section 3.1). Differs: under robust rules a mesh's items
+// are its faces, and the outline is the exact union of them, projected; the α-shape serves points.
 // Robust besides: holes under 0.25 m² are filled and rings that end within a few growing distances
 // of a neighbouring plane are drawn onto the common line, because horizontal rays leak through
 // gaps. Notation: u, v axes in the plane; L the line where two planes meet.

@@ -10,7 +10,12 @@ namespace colod::parameters::planes {
 constexpr double kFloaterArea = 2;        // m²: a component at least this large is never a floater
 constexpr double kFloaterShare = 0.002;   // of the area: likewise
 constexpr double kFloaterDistance = 0.2;  // metres: what lies closer to the building belongs to it
-constexpr double kNoiseRadius = 1.5;      // metres: wide enough to see bumps beside white noise
+// --rules paper: points that stand for a mesh.
+constexpr double kSampleDensity = 100;   // a square metre: 10 cm apart, half the growing distance
+constexpr double kLeastSamples = 20000;  // a building, however small …
+constexpr double kMostSamples =
+    400000;  // … or large: the paper's models have 1,000 to 588,000 vertices
+constexpr double kNoiseRadius = 1.5;  // metres: wide enough to see bumps beside white noise
 // Three residuals of a whole wall, which on scans is 2.3 times that of 1.5 m of it (0.012 m against
 // 0.027 m on simulated photogrammetry).
 constexpr double kNoiseFactor = 7;

@@ -1,9 +1,9 @@
 // Based on: paper section 3.1 ("primary planes"): region growing, a region's outline as α-shape.
 // Differs: --rules paper takes what CGAL's region growing gives at the options' distance, angle and
-// count. Robust drops floaters, measures the noise and grows at three times a wall's residual,
-// filters by area relative to the building, merges and aligns planes, and repairs their orientation
-// by rays. Notation: item = face of a mesh or point of a cloud; region = items on a plane, not yet
-// a Plane.
+// count, on points: a mesh is sampled (sampling.h). Robust grows on a mesh's faces, drops floaters,
+// measures the noise and grows at three times a wall's residual, filters by area relative to the
+// building, merges and aligns planes, and repairs their orientation by rays. Notation: item = face
+// of a mesh or point of a cloud; region = items on a plane, not yet a Plane.
 #include "planes.h"
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 #include "regularize.h"
 #include "relief_planes.h"
 #include "round.h"
+#include "sampling.h"
 
 namespace colod {
 namespace {
@@ -207,6 +208,19 @@ std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, d
   return planes;
 }
 
+Error no_plane(const Source& source) {
+  return {Stage::kProcess, source.name, kNoPlane};
+}
+
+/// The planes of points that stand for a mesh.
+Planes planes_of_samples(const Source& source, const PlaneOptions& options) {
+  const FaceSamples samples = sample_faces(source);
+  if (samples.face.empty()) throw no_plane(source);
+  Planes planes = detect_planes(samples.cloud, options);
+  hand_to_faces(source, samples, planes);
+  return planes;
+}
+
 }  // namespace
 
 Planes::Surface surface_at(double distance) {
@@ -214,13 +228,15 @@ Planes::Surface surface_at(double distance) {
 }
 
 Planes detect_planes(const Source& source, const PlaneOptions& options) {
+  if (source.is_mesh() && !options.rules.has(Rule::kFaces))
+    return planes_of_samples(source, options);
   Planes result;
   Items items = collect_items(source);
   const RuleSet& rules = options.rules;
   std::vector<Region> regions = find_regions(items, options, result);
   orient_by_items(items, regions);
   result.planes = to_planes(items, regions, result.distance, rules);
-  if (result.planes.empty()) throw Error(Stage::kProcess, source.name, kNoPlane);
+  if (result.planes.empty()) throw no_plane(source);
   const bool is_airborne_told = !items.is_mesh() && rules.has(Rule::kAirborne);
   if (rules.has(Rule::kOrientation))
     if (const int flipped = repair_orientation(result.planes, is_airborne_told); flipped > 0)

@@ -22,8 +22,8 @@ constexpr int kFloater = -2;
 constexpr int kAround = -3;
 
 struct PlaneOptions {
-  RuleSet rules = RuleSet::all();  ///< none: CGAL's region growing at the values below, nothing
-                                   ///< else
+  RuleSet rules = RuleSet::all();  ///< none: CGAL's region growing on points (of a mesh:
+                                   ///< sampled) at the values below, nothing else
   double distance = 0.2;  ///< metres; with Rule::kNoise the most it may be, the value used is found
                           ///< from the data (planes.cpp)
   double angle_deg = 30;

@@ -92,7 +92,9 @@ std::vector<RuleInfo> soundness_rules() {
       {.rule = Rule::kVolume,
        .id = "chain.volume",
        .title = "a layer of another volume takes the next finer mesh",
-       .sees = "Coarser layers whose volume is off that of a finer one by more than a fifth.",
+       .sees =
+           "Coarser layers whose volume is off that of a finer one by more than a fifth, or whose "
+           "tops and sides are mostly invented (chain.scene_part has the numbers).",
        .does = "Puts the finer mesh in their place and reports a failure.",
        .paper = "Such a layer is kept.",
        .reason = "It has lost a part of the building, or invented one.",

@@ -97,6 +97,19 @@ std::vector<RuleInfo> cutting_rules() {
        .test = "extraction/verbs: planes that look elsewhere are no leaders, nor are those farther "
                "than the tolerance",
        .made_on = {"ingolstadt-north-scan", "mvs", "mvs-with-ground", "synth-scan"}},
+      {.rule = Rule::kReach,
+       .id = "extraction.reach",
+       .title = "a plane cuts where its outline reaches",
+       .sees = "The convex hull of a plane's outline, grown by 10 cm.",
+       .does = "Cuts the cells that it reaches, no others.",
+       .paper =
+           "Planes divide the whole box; where that makes more than 30,000 cells each cuts where "
+           "its outline reaches, and a warning says so.",
+       .reason = "Whole planes made 50 times the cells at 2,400 planes.",
+       .parameters = {},
+       .needs = {},
+       .test = "extraction/extraction: whole planes make more cells and the same house",
+       .made_on = {}},
       {.rule = Rule::kFineCuts,
        .id = "extraction.clip",
        .title = "space is cut as finely as planes are known",
@@ -134,8 +147,8 @@ std::vector<RuleInfo> label_rules() {
        .does =
            "Casts level and slightly raised rays, and steep ones that tell whether what escapes "
            "has a roof above it.",
-       .paper = "Rays over the sphere, from the centroid.",
-       .reason = "Half the rays of a low cell leave through the missing floor.",
+       .paper = "Level rays from the centroid, as from voxels.",
+       .reason = "Level rays alone know no roof: below one that stands on no walls all is outside.",
        .parameters = {{"first_ring", "°", evidence::kElevations[0], "of elevation"},
                       {"second_ring", "°", evidence::kElevations[1], "likewise"},
                       {"third_ring", "°", evidence::kElevations[2], "likewise"},

@@ -110,6 +110,30 @@ RuleInfo floaters_rule() {
           .made_on = {"ingolstadt-north-scan"}};
 }
 
+RuleInfo faces_rule() {
+  return {
+      .rule = Rule::kFaces,
+      .id = "planes.faces",
+      .title = "a mesh is grown face by face",
+      .sees = "Meshes.",
+      .does =
+          "Grows regions over faces that share an edge; a region's outline is the union of its "
+          "faces.",
+      .paper =
+          "The paper counts points: they are spread over the mesh, and an outline is the "
+          "α-shape of a region's points.",
+      .reason =
+          "A mesh knows its surface and its borders to the last digit, and the least region of "
+          "20 points depends on how densely they lie.",
+      .parameters = {{"sample_density", "per m²", planes::kSampleDensity,
+                      "points on a mesh without the rule: 10 cm apart"},
+                     {"least_samples", "", planes::kLeastSamples, "of a building: at least"},
+                     {"most_samples", "", planes::kMostSamples, "likewise: at most"}},
+      .needs = {},
+      .test = "planes/planes: without the rule for faces a mesh is points, whatever its triangles",
+      .made_on = {}};
+}
+
 RuleInfo round_sides_rule() {
   return {
       .rule = Rule::kRoundSides,
@@ -145,7 +169,7 @@ RuleInfo round_sides_rule() {
            {"most_sides", "", planes::kMostSides, "of a shape: more take half a minute to cut"},
            {"finest", "m", planes::kFinest,
             "between a side and its arc where a shape has more sides than that"}},
-      .needs = {},
+      .needs = {Rule::kFaces},
       .test =
           "rounds/rounds: a dome is rows and columns of sides, whatever its size and where it "
           "stands",
@@ -180,7 +204,8 @@ RuleInfo ellipses_rule() {
 }  // namespace
 
 std::vector<RuleInfo> source_rules() {
-  return {ground_rule(), hidden_rule(), floaters_rule(), round_sides_rule(), ellipses_rule()};
+  return {ground_rule(), hidden_rule(),      floaters_rule(),
+          faces_rule(),  round_sides_rule(), ellipses_rule()};
 }
 
 }  // namespace colod::rules

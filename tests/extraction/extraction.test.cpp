@@ -224,6 +224,25 @@ TEST_CASE("paper rules close what is closed") {
   CHECK(e.mesh.vertices.size() == 10);
 }
 
+TEST_CASE("whole planes make more cells and the same house") {
+  const Mesh house = join(l_shape(), box_mesh({1, 1, 4}, {3, 3, 6}));
+  const RuleSet paper = RuleSet::none();
+  const Extraction whole = extract(house, {.rules = paper});
+  const Extraction reached = extract(house, {.rules = paper.with(Rule::kReach)});
+  CHECK(whole.cells > reached.cells);
+  CHECK(signed_volume(whole.mesh.mesh()) == Approx(signed_volume(reached.mesh.mesh())));
+  CHECK(whole.warnings.empty());
+  const int most = static_cast<int>(whole.cells) - 1;
+  const Extraction capped = extract(house, {.rules = paper, .max_cells = most});
+  CHECK(capped.cells == reached.cells);
+  CHECK(joined(capped.warnings).find("outline reaches") != std::string::npos);
+}
+
+TEST_CASE("paper rules need no floor") {
+  const Mesh open = without_faces(gable_house(10, 6, 4, 3), {0, 0, -1});
+  expect_solid(extract(open, {.rules = RuleSet::none()}).mesh, 330);
+}
+
 TEST_CASE("a layer is the same whatever was looked at before") {
   const Planes planes = planes_of_mesh(join(l_shape(), box_mesh({1, 1, 4}, {3, 3, 6})));
   const std::vector<int> all = all_planes(planes), few(all.begin(), all.begin() + 6);

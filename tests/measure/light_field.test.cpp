@@ -91,6 +91,39 @@ TEST_CASE("nothing, one pixel and a line are described without a number that is 
   }
 }
 
+TEST_CASE(
+    "as the authors' program: nothing from itself, turned or scaled, and grows with the roof") {
+  const Mesh m = house();
+  const ProgramLightFields own = describe_as_program(m);
+  CHECK(light_field_distance(own, own) == 0);
+  const Mesh placed = transformed(m, Eigen::Matrix3d::Identity(), 3, {1e5, -2e5, 40});
+  CHECK(light_field_distance(own, describe_as_program(placed)) < 200);
+  const Mesh slab = test::box_mesh({0, 0, 0}, {10, 7, 0.2});
+  const int apart_from_slab = light_field_distance(own, describe_as_program(slab));
+  const Mesh turned = transformed(m, dodecahedron_rotations()[17]);
+  CHECK(4 * light_field_distance(own, describe_as_program(turned)) < apart_from_slab);  // pixels
+  int last = 0;
+  for (const double roof : {3.5, 4.5, 6.5, 10.0}) {
+    const int d = light_field_distance(own, describe_as_program(test::gable_house(10, 7, 5, roof)));
+    CHECK(d > last);
+    last = d;
+  }
+}
+
+TEST_CASE("as the authors' program: a ball is round from all sides, a needle is a line") {
+  const auto last_two = [](const Mesh& mesh) {
+    const ProgramDescriptor view = describe_as_program(mesh).views[0][0];
+    return std::pair<int, int>(view[kProgramCount - 2], view[kProgramCount - 1]);
+  };
+  const auto [ball_circularity, ball_eccentricity] = last_two(test::sphere_mesh(4));
+  CHECK(ball_circularity > 230);
+  CHECK(ball_eccentricity < 3);
+  const auto [needle_circularity, needle_eccentricity] =
+      last_two(test::box_mesh({0, 0, 0}, {100, 1, 1}));
+  CHECK(needle_circularity < 30);
+  CHECK(needle_eccentricity > 250);
+}
+
 TEST_CASE("sixty rotations, all different, all rotations") {
   const auto rotations = dodecahedron_rotations();
   REQUIRE(rotations.size() == 60);

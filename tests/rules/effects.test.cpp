@@ -137,9 +137,9 @@ TEST_CASE("each rule of planes changes a source that was made for it") {
   CHECK(without.box.min.z() > 7);
   const std::vector<Source> scans = neighbourhood(4, true, 15);
   for (const Rule rule :
-       {Rule::kFloaters, Rule::kNoise, Rule::kSmoothNormals, Rule::kGrowing, Rule::kRegionArea,
-        Rule::kCoplanar, Rule::kUpright, Rule::kFamilies, Rule::kTilts, Rule::kNarrowStrips,
-        Rule::kOffsets, Rule::kAbsorb, Rule::kHoles, Rule::kBorders}) {
+       {Rule::kFloaters, Rule::kFaces, Rule::kNoise, Rule::kSmoothNormals, Rule::kGrowing,
+        Rule::kRegionArea, Rule::kCoplanar, Rule::kUpright, Rule::kFamilies, Rule::kTilts,
+        Rule::kNarrowStrips, Rule::kOffsets, Rule::kAbsorb, Rule::kHoles, Rule::kBorders}) {
     INFO(info_of(rule).id);
     CHECK(std::any_of(scans.begin(), scans.end(),
                       [&](const Source& s) { return changes_planes(rule, s); }));
@@ -151,8 +151,8 @@ TEST_CASE("each rule of extraction changes a layer of a source made for it") {
                                      segmented(neighbourhood(4, true, 15)[3])};
   std::vector<Building> before = houses;
   for (Building& b : before) mesh_building(b, with_rules(RuleSet::all(), 24));
-  for (const Rule rule : {Rule::kSides, Rule::kElementCuts, Rule::kLeaders, Rule::kPruning,
-                          Rule::kRings, Rule::kMinCut, Rule::kFacetPrice}) {
+  for (const Rule rule : {Rule::kSides, Rule::kElementCuts, Rule::kReach, Rule::kLeaders,
+                          Rule::kPruning, Rule::kRings, Rule::kMinCut, Rule::kFacetPrice}) {
     INFO(info_of(rule).id);
     bool is_changed = false;
     for (std::size_t i = 0; i < houses.size() && !is_changed; ++i) {

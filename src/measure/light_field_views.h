@@ -1,0 +1,49 @@
+// Inside room `measure`: what the two descriptions of light fields share.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "light_field.h"
+
+namespace colod::light_fields {
+
+struct Pixel {
+  int x, y;
+  bool operator==(const Pixel&) const = default;
+};
+
+/// All silhouettes of a model, the views of each light field together. Throws as
+/// describe_light_fields.
+std::vector<Silhouette> cast_silhouettes(const Mesh& mesh);
+
+std::vector<Pixel> covered_pixels(const Silhouette& silhouette);
+/// The border pixels of the largest 8-connected part, in order round it from outside.
+std::vector<Pixel> outer_contour(const Silhouette& silhouette);
+
+/// Onto which view each of the 60 rotations moves each view.
+using Permutation = std::array<int, kViewCount>;
+std::vector<Permutation> view_permutations();
+
+/// The least sum of differences between views over all pairs of light fields and all rotations.
+template <typename Fields, typename Difference>
+int least_distance(const Fields& a, const Fields& b, const Difference& difference) {
+  const std::vector<Permutation> permutations = view_permutations();
+  int best = std::numeric_limits<int>::max();
+  for (const auto& field_a : a.views)
+    for (const auto& field_b : b.views) {
+      std::array<std::array<int, kViewCount>, kViewCount> table;
+      for (int i = 0; i < kViewCount; ++i)
+        for (int j = 0; j < kViewCount; ++j) table[i][j] = difference(field_a[i], field_b[j]);
+      for (const Permutation& to : permutations) {
+        int sum = 0;
+        for (int i = 0; i < kViewCount; ++i) sum += table[i][to[i]];
+        best = std::min(best, sum);
+      }
+    }
+  return best;
+}
+
+}  // namespace colod::light_fields
