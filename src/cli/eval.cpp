@@ -10,6 +10,7 @@
 #include "log.h"
 #include "measure/consistency.h"
 #include "measure/light_field.h"
+#include "measure/looks.h"
 #include "measure/metrics.h"
 #include "numbers.h"
 
@@ -122,6 +123,11 @@ int eval(const EvalArguments& a) {
       {"mean_distance_back", d.mean_b_to_a},
       {"rms_distance", d.rms_a_to_b},
       {"samples", a.distance.samples}};
+  const LookGauge gauge(reference);
+  json["source"] = {{"faces", reference.mesh.faces.size()},
+                    {"noise", gauge.source().noise},
+                    {"edge", gauge.source().edge}};
+  json["looks"] = Json::parse(looks_json(gauge.look_at(model.mesh)));
   if (a.has_lfd) json["light_field_distance"] = light_fields_apart(reference, model);
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
