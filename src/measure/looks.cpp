@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kSamples = 8192;             // a mesh
 constexpr std::size_t kMostPoints = 1 << 18;  // of a cloud that are asked
+constexpr std::size_t kMostEdges = 100000;    // faces whose edges are measured
 constexpr double kLeastSpacing = 0.02;        // metres
 constexpr std::size_t kNoiseSeeds = 256;      // places where noise is looked at
 constexpr std::size_t kNoisePoints = 16384;   // that are looked at from there
@@ -38,6 +39,9 @@ constexpr double kFacing = 0.5;       // cosine: the source faces as the side do
 constexpr double kSheets = 0.01;      // metres of noise: what a person drew may be sheets
 constexpr double kLeastWidth = 0.01;  // metres
 constexpr double kSkin = 2e-4;        // metres: no ray meets its own face
+// What one sees in a picture (judge_looks).
+constexpr double kSeenFlap = 0.5, kSeenUnsupported = 1;                    // m²
+constexpr double kSeenLeaning = 0.05, kSeenEdges = 0.2, kSeenEaves = 0.1;  // shares
 constexpr std::size_t kGrain = 64;
 
 /// Points as nanoflann wants to see them.
@@ -60,8 +64,9 @@ Mesh finite_part(const Mesh& mesh) {
     if (const double area = face_area(mesh, f); area > 0 && std::isfinite(area))
       part.faces.push_back(f);
   // Vertices that no face uses may be anything.
-  for (Vec3& v : part.vertices)
-    if (!v.allFinite()) v = Vec3::Zero();
+  if (!part.faces.empty())
+    for (Vec3& v : part.vertices)
+      if (!v.allFinite()) v = part.vertices[part.faces[0][0]];
   return part;
 }
 
@@ -71,9 +76,11 @@ double spacing_of(const Mesh& mesh) {
 
 double median_edge(const Mesh& mesh) {
   std::vector<double> lengths;
-  for (const Face& f : mesh.faces)
+  const std::size_t step = mesh.faces.size() / kMostEdges + 1;
+  for (std::size_t i = 0; i < mesh.faces.size(); i += step)
     for (int k = 0; k < 3; ++k)
-      lengths.push_back((mesh.vertices[f[k]] - mesh.vertices[f[(k + 1) % 3]]).norm());
+      lengths.push_back(
+          (mesh.vertices[mesh.faces[i][k]] - mesh.vertices[mesh.faces[i][(k + 1) % 3]]).norm());
   return median(std::move(lengths));
 }
 
@@ -150,17 +157,19 @@ FaultPlace worst_place(const std::vector<SurfaceSample>& points, const std::vect
 
 struct LookGauge::Impl {
   SourceLooks looks;
-  std::size_t faces = 0;      // of the source; 0: points
-  Points samples;             // of its surface, or its points
-  std::vector<Vec3> normals;  // of the samples; empty: none known
-  std::optional<RayScene> surface;
-  Mesh mesh;
-  std::unique_ptr<PointTree> tree;  // of points that have no surface
+  std::size_t faces = 0;             // of the source; 0: points
+  Points samples;                    // of its surface, or its points
+  std::vector<Vec3> normals;         // of the samples; empty: none known
+  std::unique_ptr<Surface> own;      // where none was given
+  const Surface* surface = nullptr;  // of points: none
+  std::unique_ptr<PointTree> tree;   // of points that have no surface
   double support = 0, thin = 0;
   std::optional<Tops> tops;
 
-  explicit Impl(const Source& source);
-  void sample(const Source& source);
+  Impl(const Source& source, const Surface* known);
+  void sample_surface();
+  void sample_points(const PointCloud& cloud);
+  double spacing_of_points() const;
   double noise_at(std::size_t sample) const;
   void measure_noise();
   double nearest_sample(const Vec3& p) const;
@@ -171,51 +180,61 @@ struct LookGauge::Impl {
   void look_at_surface(const Mesh& mesh, const std::vector<int>& facet_of_face, Looks& looks) const;
 };
 
-LookGauge::Impl::Impl(const Source& source) {
-  sample(source);
+LookGauge::Impl::Impl(const Source& source, const Surface* known)
+    : faces(source.mesh.faces.size()) {
+  if (source.is_mesh()) {
+    if (!known) own = std::make_unique<Surface>(finite_part(source.mesh));
+    surface = known ? known : own.get();
+    sample_surface();
+  } else {
+    sample_points(source.cloud);
+  }
   if (samples.points.empty())
     throw Error(Stage::kInput, source.name, "no finite face with an area and no finite point");
   measure_noise();
-  support = std::max(kSupport, kSupportShare * bounding_box(samples.points).diagonal());
+  const Box box = bounding_box(surface ? surface->mesh.vertices : samples.points);
+  support = std::max(kSupport, kSupportShare * box.diagonal());
   thin = std::max(kThin, looks.noise);
-  if (!surface) {
-    tree = std::make_unique<PointTree>(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    tree->buildIndex();
-    std::vector<double> gaps;
-    const std::size_t step = samples.points.size() / kNoiseSeeds + 1;
-    for (std::size_t i = 0; i < samples.points.size(); i += step) {
-      std::size_t index[2];
-      double squared[2];
-      if (tree->knnSearch(samples.points[i].data(), 2, index, squared) == 2)
-        gaps.push_back(std::sqrt(squared[1]));
-    }
-    support = std::max(support, kSpacings * median(std::move(gaps)));
-  }
-  std::vector<Vec3> points = samples.points;  // a top is no lower than its corners
-  for (const Face& f : mesh.faces)
-    for (const int v : f) points.push_back(mesh.vertices[v]);
+  if (!surface) support = std::max(support, kSpacings * spacing_of_points());
+  std::vector<Vec3> points = samples.points;
+  if (surface)  // a top is no lower than its corners
+    points.insert(points.end(), surface->mesh.vertices.begin(), surface->mesh.vertices.end());
   tops.emplace(points, support);
 }
 
-void LookGauge::Impl::sample(const Source& source) {
-  if (!source.is_mesh()) {
-    const std::size_t step = source.cloud.points.size() / kMostPoints + 1;
-    for (std::size_t i = 0; i < source.cloud.points.size(); i += step) {
-      if (!source.cloud.points[i].allFinite()) continue;
-      samples.points.push_back(source.cloud.points[i]);
-      if (!source.cloud.normals.empty()) normals.push_back(source.cloud.normals[i]);
-    }
-    return;
-  }
-  mesh = finite_part(source.mesh);
+void LookGauge::Impl::sample_surface() {
+  const Mesh& mesh = surface->mesh;
   if (mesh.faces.empty()) return;
-  faces = source.mesh.faces.size();
   looks.edge = median_edge(mesh);
-  surface.emplace(mesh);
   for (const SurfaceSample& s : spread_over(mesh, spacing_of(mesh))) {
     samples.points.push_back(s.point);
     normals.push_back(face_cross(mesh, mesh.faces[s.face]).normalized());
   }
+}
+
+void LookGauge::Impl::sample_points(const PointCloud& cloud) {
+  const std::size_t step = cloud.points.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < cloud.points.size(); i += step) {
+    if (!cloud.points[i].allFinite()) continue;
+    samples.points.push_back(cloud.points[i]);
+    if (!cloud.normals.empty()) normals.push_back(cloud.normals[i]);
+  }
+  if (samples.points.empty()) return;
+  tree = std::make_unique<PointTree>(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  tree->buildIndex();
+}
+
+/// The median distance from a point to the next one.
+double LookGauge::Impl::spacing_of_points() const {
+  std::vector<double> gaps;
+  const std::size_t step = samples.points.size() / kNoiseSeeds + 1;
+  for (std::size_t i = 0; i < samples.points.size(); i += step) {
+    std::size_t index[2];
+    double squared[2];
+    if (tree->knnSearch(samples.points[i].data(), 2, index, squared) == 2)
+      gaps.push_back(std::sqrt(squared[1]));
+  }
+  return median(std::move(gaps));
 }
 
 /// Root of the mean squared distance from the best plane; negative: too few points to tell.
@@ -245,16 +264,17 @@ double LookGauge::Impl::nearest_sample(const Vec3& p) const {
 }
 
 double LookGauge::Impl::distance(const Vec3& p) const {
-  return surface ? surface->nearest(p).distance : nearest_sample(p);
+  return surface ? surface->rays.nearest(p).distance : nearest_sample(p);
 }
 
 /// Whether the source has surface here that faces this way.
 bool LookGauge::Impl::shows(const Vec3& p, const Vec3& normal) const {
   if (!surface) return false;
-  const NearestPoint near = surface->nearest(p, thin);
+  const NearestPoint near = surface->rays.nearest(p, thin);
   if (near.triangle < 0 || near.distance > thin) return false;
   if (looks.noise < kSheets) return true;
-  return face_cross(mesh, mesh.faces[near.triangle]).normalized().dot(normal) > kFacing;
+  return face_cross(surface->mesh, surface->mesh.faces[near.triangle]).normalized().dot(normal) >
+         kFacing;
 }
 
 bool LookGauge::Impl::is_flap(const RayScene& body, const Vec3& p, const Vec3& normal) const {
@@ -299,12 +319,37 @@ void LookGauge::Impl::look_at_surface(const Mesh& m, const std::vector<int>& fac
 }
 
 const char* to_string(LookFault fault) {
-  constexpr std::array<const char*, kLookFaults> kNames = {"flap", "unsupported", "leaning",
-                                                           "narrow"};
+  constexpr std::array<const char*, kLookFaults> kNames = {
+      "flap", "unsupported", "leaning", "narrow", "edges", "eaves", "triangles"};
   return kNames[static_cast<int>(fault)];
 }
 
-LookGauge::LookGauge(const Source& source) : impl_(std::make_unique<Impl>(source)) {}
+LookVerdict judge_looks(const Looks& l) {
+  constexpr double kMostPoints = 10;  // of one fault, so that none hides the others
+  const std::array<double, kLookFaults> times = {l.flaps / kSeenFlap,
+                                                 l.unsupported / kSeenUnsupported,
+                                                 (1 - l.upright) / kSeenLeaning,
+                                                 static_cast<double>(l.narrow),
+                                                 (1 - l.aligned) / kSeenEdges,
+                                                 (1 - l.level_eaves) / kSeenEaves,
+                                                 l.triangles_ratio};
+  LookVerdict verdict;
+  for (int i = 0; i < kLookFaults; ++i) {
+    const auto fault = static_cast<LookFault>(i);
+    const bool is_seen = fault == LookFault::kTriangles ? times[i] > 1 : times[i] >= 1;
+    if (!is_seen) continue;
+    verdict.faults.push_back(fault);
+    verdict.points += std::min(kMostPoints, times[i]);
+  }
+  std::stable_sort(verdict.faults.begin(), verdict.faults.end(), [&](LookFault a, LookFault b) {
+    return times[static_cast<int>(a)] > times[static_cast<int>(b)];
+  });
+  return verdict;
+}
+
+LookGauge::LookGauge(const Source& source) : impl_(std::make_unique<Impl>(source, nullptr)) {}
+LookGauge::LookGauge(const Source& source, const Surface& surface)
+    : impl_(std::make_unique<Impl>(source, &surface)) {}
 LookGauge::~LookGauge() = default;
 
 const SourceLooks& LookGauge::source() const { return impl_->looks; }
@@ -332,10 +377,14 @@ std::string looks_json(const Looks& l) {
                                  {"unsupported", l.unsupported},
                                  {"flaps", l.flaps}};
   json["worst"] = nlohmann::ordered_json::object();
-  for (int i = 0; i < kLookFaults; ++i)
+  for (int i = 0; i < kPlacedFaults; ++i)
     if (const FaultPlace& w = l.worst[i]; w.size > 0)
       json["worst"][to_string(static_cast<LookFault>(i))] = {
           {"size", w.size}, {"place", {w.place.x(), w.place.y(), w.place.z()}}};
+  const LookVerdict verdict = judge_looks(l);
+  json["points"] = verdict.points;
+  json["faults"] = nlohmann::ordered_json::array();
+  for (const LookFault fault : verdict.faults) json["faults"].push_back(to_string(fault));
   return json.dump();
 }
 

@@ -6,16 +6,18 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/geometry.h"
+#include "solid.h"
 
 namespace colod {
 
-/// What can be wrong with a layer's looks, worst place by worst place.
-enum class LookFault { kFlap, kUnsupported, kLeaning, kNarrow };
-constexpr int kLookFaults = 4;
+/// What can be wrong with a layer's looks. The first ones have a place where they are worst.
+enum class LookFault { kFlap, kUnsupported, kLeaning, kNarrow, kEdges, kEaves, kTriangles };
+constexpr int kLookFaults = 7, kPlacedFaults = 4;
 
-/// As in report.json: "flap", "unsupported", "leaning", "narrow".
+/// As in report.json: "flap", "unsupported", "leaning", "narrow", "edges", "eaves", "triangles".
 const char* to_string(LookFault fault);
 
 /// Where a fault is worst: a facet.
@@ -33,8 +35,20 @@ struct Looks {
   int narrow = 0;          ///< facets narrower than the noise
   double unsupported = 0;  ///< m² that no source supports
   double flaps = 0;        ///< m² of thin bodies
-  std::array<FaultPlace, kLookFaults> worst;  ///< by LookFault
+  std::array<FaultPlace, kPlacedFaults> worst;  ///< by LookFault
 };
+
+/// What is to be said of a layer's looks in one word.
+struct LookVerdict {
+  double points = 0;              ///< 0: nothing is seen; the sum of the faults' own, 1..10 each
+  std::vector<LookFault> faults;  ///< that are seen, the heaviest first
+};
+
+/// A fault is seen from a bound on, its points are how many times the bound it is: flaps 0.5 m²,
+/// unsupported surface 1 m², 5 % of the wall area leaning, a narrow facet, 20 % of the edges'
+/// length in no direction of the plan, 10 % of the eaves' not level; more triangles than the source
+/// has.
+LookVerdict judge_looks(const Looks& looks);
 
 /// What is known of a source before any layer is looked at.
 struct SourceLooks {
@@ -78,6 +92,9 @@ class LookGauge {
  public:
   /// Throws Error{kInput} where the source has no finite face with an area, or no finite point.
   explicit LookGauge(const Source& source);
+  /// The same where the surface of a mesh is there: saves the time for its rays. It outlives the
+  /// gauge; of points it is not asked.
+  LookGauge(const Source& source, const Surface& surface);
   ~LookGauge();
 
   const SourceLooks& source() const;
@@ -89,8 +106,8 @@ class LookGauge {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For report.json and `colod eval`: an object with the members of Looks, and as `worst` the places
-/// by the faults' names, those that there are.
+/// For report.json and `colod eval`: an object with the members of Looks, as `worst` the places by
+/// the faults' names, those that there are, and the verdict's `points` and `faults`.
 std::string looks_json(const Looks& looks);
 
 }  // namespace colod

@@ -126,6 +126,18 @@ TEST_CASE("noise decides which facets are narrow") {
   CHECK(LookGauge(test::as_source(kBox)).source().edge == Approx(9).margin(1.1));
 }
 
+TEST_CASE("the verdict counts the faults that one sees, the heaviest first") {
+  CHECK(judge_looks(look(kBox, kBox)).points == 0);
+  Looks looks;
+  looks.flaps = 0.4, looks.triangles_ratio = 1;
+  CHECK(judge_looks(looks).faults.empty());
+  looks.flaps = 100, looks.upright = 0.9, looks.triangles_ratio = 1.5;
+  const LookVerdict verdict = judge_looks(looks);
+  CHECK(verdict.faults ==
+        std::vector<LookFault>{LookFault::kFlap, LookFault::kLeaning, LookFault::kTriangles});
+  CHECK(verdict.points == Approx(10 + 2 + 1.5));
+}
+
 TEST_CASE("looks: what has no surface, and threads") {
   CHECK_THROWS_AS(LookGauge(test::as_source({})), Error);
   CHECK(look(kBox, {}).upright == 1);
@@ -133,6 +145,8 @@ TEST_CASE("looks: what has no surface, and threads") {
   std::string alone;
   in_threads(1, [&] { alone = looks_json(look(kBox, tower)); });
   CHECK(alone == looks_json(look(kBox, tower)));
+  const Source source = test::as_source(kBox);
+  CHECK(alone == looks_json(LookGauge(source, Surface(kBox)).look_at(tower)));
   const auto json = nlohmann::json::parse(alone);
   CHECK(json.at("flaps") > 0);
   CHECK(json.at("worst").contains("flap"));
