@@ -38,6 +38,7 @@ constexpr double kOpposed = -0.866;   // cosine: a thin body's sides face apart 
 constexpr double kFacing = 0.5;       // cosine: the source faces as the side does
 constexpr double kSheets = 0.01;      // metres of noise: what a person drew may be sheets
 constexpr double kLeastWidth = 0.01;  // metres
+constexpr int kMostHits = 8;          // of the source along a line
 constexpr double kSkin = 2e-4;        // metres: no ray meets its own face
 // What one sees in a picture (judge_looks).
 constexpr double kSeenFlap = 0.5, kSeenUnsupported = 1;                    // m²
@@ -240,12 +241,12 @@ double LookGauge::Impl::spacing_of_points() const {
 /// Root of the mean squared distance from the best plane; negative: too few points to tell.
 double LookGauge::Impl::noise_at(std::size_t sample) const {
   const std::size_t step = samples.points.size() / kNoisePoints + 1;
-  std::vector<Vec3> own;
+  std::vector<Vec3> around;
   for (std::size_t i = 0; i < samples.points.size(); i += step)
     if ((samples.points[i] - samples.points[sample]).squaredNorm() < kNoiseRadius * kNoiseRadius &&
         (normals.empty() || normals[sample].dot(normals[i]) > M_SQRT1_2))
-      own.push_back(samples.points[i]);
-  return own.size() < kLeastNeighbours ? -1 : rms_from_plane(own);
+      around.push_back(samples.points[i]);
+  return around.size() < kLeastNeighbours ? -1 : rms_from_plane(around);
 }
 
 void LookGauge::Impl::measure_noise() {
@@ -273,8 +274,8 @@ bool LookGauge::Impl::shows(const Vec3& p, const Vec3& normal) const {
   const NearestPoint near = surface->rays.nearest(p, thin);
   if (near.triangle < 0 || near.distance > thin) return false;
   if (looks.noise < kSheets) return true;
-  return face_cross(surface->mesh, surface->mesh.faces[near.triangle]).normalized().dot(normal) >
-         kFacing;
+  const Vec3 cross = face_cross(surface->mesh, surface->mesh.faces[near.triangle]);
+  return cross.normalized().dot(normal) > kFacing;
 }
 
 bool LookGauge::Impl::is_flap(const RayScene& body, const Vec3& p, const Vec3& normal) const {
