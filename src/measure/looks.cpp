@@ -38,7 +38,6 @@ constexpr double kOpposed = -0.866;   // cosine: a thin body's sides face apart 
 constexpr double kFacing = 0.5;       // cosine: the source faces as the side does
 constexpr double kSheets = 0.01;      // metres of noise: what a person drew may be sheets
 constexpr double kLeastWidth = 0.01;  // metres
-constexpr int kMostHits = 8;          // of the source along a line
 constexpr double kSkin = 2e-4;        // metres: no ray meets its own face
 // What one sees in a picture (judge_looks).
 constexpr double kSeenFlap = 0.5, kSeenUnsupported = 1;                    // m²
