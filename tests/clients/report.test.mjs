@@ -144,7 +144,7 @@ test("a building's card has its g, deviation and distances on every layer", asyn
   const card = page.locator('.card').first();
   await card.scrollIntoViewIfNeeded();
   await card.locator('summary', { hasText: 'Switching' }).click();
-  const rows = await card.locator('tbody tr').evaluateAll((all) => all.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));
+  const rows = await card.locator('details:has(summary:text("Switching")) tbody tr').evaluateAll((all) => all.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));
   assert.deepEqual(rows, shown[0].layers.map((l) => [...[l.gsd, l.own_gsd, l.deviation].map((x) => (l.like_finer ? `as ${l.layer + 1}` : x > 0 ? x.toFixed(3) : '0')),
     ...['mean', 'p95', 'p99', 'max'].map((key) => l.distance[key].toFixed(3))]));
   await screenshot(page, 'report-card');
@@ -184,6 +184,7 @@ test('what was left out is told, alike layers are named, and bytes may be missin
   assert.ok((await column(page, (await headings(page)).indexOf('Left out'))).includes('6.6 %'));
   const card = page.locator('#b0');
   await card.scrollIntoViewIfNeeded();
+  await card.locator('.strip').waitFor();
   assert.match(await card.textContent(), /ground \(12\.3 m², 5\.6 %\), up to 7\.8 m away; pieces afloat \(1\.0 %\), up to 9\.1 m away/);
   assert.match(await card.locator('figcaption').nth(1).textContent(), /faces, as layer 1$/);
   assert.match((await page.locator('#switching tbody tr').allTextContents()).at(-1), /^Layer 0.*as layer 1/);
