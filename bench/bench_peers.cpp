@@ -38,6 +38,7 @@
 #include "core/error.h"
 #include "core/spread.h"
 #include "measure/light_field.h"
+#include "measure/looks.h"
 #include "measure/metrics.h"
 #include "planes/planes.h"
 #include "read/frame.h"
@@ -290,30 +291,32 @@ void run(const std::string& peer, const std::string& path, const std::string& ou
   write_off(out, compact(result), origin);
 }
 
-/// How the source looks, by both descriptions.
-struct Looks {
+/// The source from around, by both descriptions.
+struct Silhouettes {
   LightFields fields;
   ProgramLightFields program;
 };
 
-nlohmann::ordered_json measure(const DistanceGauge& gauge, const Looks* own,
-                               const std::string& path) {
+nlohmann::ordered_json measure(const DistanceGauge& gauge, const LookGauge& looks,
+                               const Silhouettes* own, const std::string& path) {
   const Mesh model = read_single(path).mesh;
   const Validity v = check_validity(model);
   const Distances d = gauge.measure_to(model);
-  nlohmann::ordered_json json{{"vertices", v.vertices},
-                              {"faces", v.faces},
-                              {"polygons", v.polygons},
-                              {"watertight", v.is_watertight},
-                              {"manifold", v.is_manifold},
-                              {"self_intersections", v.self_intersections},
-                              {"least_width", v.least_width},
-                              {"components", v.components},
-                              {"enclosed_components", v.enclosed_components},
-                              {"volume", v.volume},
-                              {"hausdorff_relative", d.relative},
-                              {"mean_distance", d.mean_a_to_b},
-                              {"mean_distance_back", d.mean_b_to_a}};
+  nlohmann::ordered_json json{
+      {"vertices", v.vertices},
+      {"faces", v.faces},
+      {"polygons", v.polygons},
+      {"watertight", v.is_watertight},
+      {"manifold", v.is_manifold},
+      {"self_intersections", v.self_intersections},
+      {"least_width", v.least_width},
+      {"components", v.components},
+      {"enclosed_components", v.enclosed_components},
+      {"volume", v.volume},
+      {"hausdorff_relative", d.relative},
+      {"mean_distance", d.mean_a_to_b},
+      {"mean_distance_back", d.mean_b_to_a},
+      {"looks", nlohmann::ordered_json::parse(looks_json(looks.look_at(model)))}};
   if (own) {
     json["light_field_distance"] = light_field_distance(own->fields, describe_light_fields(model));
     json["light_field_distance_program"] =
@@ -325,14 +328,15 @@ nlohmann::ordered_json measure(const DistanceGauge& gauge, const Looks* own,
 void measure_all(const std::string& path, const std::vector<std::string>& models) {
   const Source source = read_building(path);
   const DistanceGauge gauge(source);
-  std::optional<Looks> own;
+  const LookGauge looks(source);
+  std::optional<Silhouettes> own;
   if (source.is_mesh())
-    own = Looks{describe_light_fields(source.mesh), describe_as_program(source.mesh)};
+    own = Silhouettes{describe_light_fields(source.mesh), describe_as_program(source.mesh)};
   nlohmann::ordered_json json = {{"diagonal", diagonal_of(source)},
                                  {"models", nlohmann::json::array()}};
   for (const std::string& model : models) {
     try {
-      json["models"].push_back(measure(gauge, own ? &*own : nullptr, model));
+      json["models"].push_back(measure(gauge, looks, own ? &*own : nullptr, model));
     } catch (const Error&) {  // such as two faces without area, which a peer calls an answer
       json["models"].push_back(nullptr);
     }

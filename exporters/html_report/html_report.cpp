@@ -45,8 +45,10 @@ void bound_texts(Json& building) {
     warnings.push_back("and " + std::to_string(count - kMostWarnings) + " more: see report.json");
   }
   for (Json& w : warnings) w = cut(w.get<std::string>());
-  for (Json& layer : building["layers"])
+  for (Json& layer : building["layers"]) {
     if (layer.contains("failure")) layer["failure"] = cut(layer["failure"].get<std::string>());
+    if (layer.contains("looks")) layer["looks"].erase("worst");  // the pictures say where
+  }
   if (building.contains("failure"))
     building["failure"] = cut(building["failure"].get<std::string>());
 }

@@ -19,7 +19,7 @@ struct HtmlReport {
 
 /// The page: the shell of exporters/html_report/ (HTML, styles and scripts) and the data, each as a
 /// block of JSON in which nothing can end the block. Numbers are rounded to 6 digits, a building's
-/// warnings to 20 of 400 characters: besides pictures about 1.7 kB a building of three layers. The
+/// warnings to 20 of 400 characters: besides pictures about 3.3 kB a building of three layers. The
 /// shell shows text as text, whatever is in it.
 Encoded encode_html_report(const HtmlReport& report);
 

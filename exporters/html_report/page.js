@@ -60,5 +60,7 @@ const buildings = report.buildings.map((b, index) => {
   const own = layers.map((k) => b.layers.find((l) => l.layer === k));
   const isFailed = Boolean(b.failure) || own.some((l) => !l || l.failure);
   const isOpen = own.some((l) => l && !l.failure && !l.watertight);
-  return { ...b, index, own, isFailed, isOpen, size: b.faces || b.vertices, unit: b.faces ? 'faces' : 'points' };
+  const looks = own.filter((l) => l?.looks).map((l) => l.looks);
+  const points = looks.length ? Math.max(...looks.map((l) => l.points)) : undefined;
+  return { ...b, index, own, isFailed, isOpen, points, size: b.faces || b.vertices, unit: b.faces ? 'faces' : 'points' };
 });

@@ -55,6 +55,10 @@ const columnsOfLayer = 6;
 /** What stands for g, or another measure of the difference to the finest layer, of a building's layer. */
 const gsdText = (g, l) => (l.like_finer ? `as ${l.layer + 1}` : g > 0 ? metres(g) : '0');
 
+const faultNames = { flap: 'flaps', unsupported: 'surface that no source supports', leaning: 'leaning walls', narrow: 'slivers', edges: 'edges askew', eaves: 'eaves not level', triangles: 'more triangles than the source' };
+/** The verdict on a layer's looks: its points and what they are for. */
+const verdictText = (l) => (l.looks.faults.length ? `${l.looks.points.toFixed(0)}: ${l.looks.faults.map((f) => faultNames[f]).join(', ')}` : 'no fault seen');
+
 const shareText = (x) => percent(x, x < 0.001 ? 2 : 1);
 
 /** Columns of the table: a title, a key to sort by (undefined goes last), and what stands in the cell. */
@@ -66,6 +70,8 @@ function columns() {
     { title: 'Seg\u00adments', key: (b) => b.segments, cell: (b) => whole(b.segments) },
     { title: 'Left out', help: 'share of the source that is ground, afloat, inside or lost', key: (b) => sum(b.left_out.map((l) => l.share)),
       cell: (b) => (b.left_out.length ? shareText(sum(b.left_out.map((l) => l.share))) : none) },
+    { title: 'Looks', help: 'points for what a person would not have drawn, of the worst layer; 0: nothing is seen', key: (b) => b.points,
+      cell: (b) => (isNumber(b.points) ? make('span', { class: b.points >= 10 ? 'warn' : undefined }, b.points.toFixed(0)) : none) },
     { title: 'Warn\u00adings', key: (b) => b.warnings.length, cell: (b) => (b.warnings.length ? make('span', { class: 'warn' }, whole(b.warnings.length)) : '0') }];
   const ofLayer = (title, value, write, help) => (k) => ({ title, help, layer: k,
     key: (b) => (b.own[k] && !b.own[k].failure ? value(b.own[k]) : undefined),
@@ -97,7 +103,7 @@ function showTable(follow) {
   const groups = make('tr', {}, make('th', { colspan: all.length - columnsOfLayer * layerCount }),
     ...layers.map((k) => make('th', { colspan: columnsOfLayer, class: 'group', scope: 'colgroup' }, make('span', { class: 'swatch', style: { '--c': colorOf(k) } }), layerName(k))));
   const rows = [];
-  let sorted = 0, direction = 1, limit = mostRows;
+  let sorted = all.findIndex((column) => column.title === 'Looks'), direction = -1, limit = mostRows;
   const search = make('input', { type: 'search', placeholder: 'Filter by name', 'aria-label': 'Filter by name', oninput: () => update() });
   const filter = make('select', { 'aria-label': 'Which buildings', onchange: () => update() },
     ...[['all', 'All buildings'], ['failed', 'Failed or lost'], ['warned', 'With warnings'], ['open', 'Not watertight']]
@@ -123,7 +129,7 @@ function showTable(follow) {
   }
   section('buildings').append(make('div', { class: 'tools' }, search, filter, shown, more),
     make('div', { class: 'wide', tabindex: 0 }, make('table', { id: 'table' }, make('thead', {}, groups, make('tr', {}, ...heads)), body)),
-    make('p', { class: 'note' }, 'Click a heading to sort; plots and pictures follow. Own g: metres that one pixel covers, from where on the layer would do for this building. 95 % and error (the largest): distances in metres from the source to the layer. Layer 0 is the coarsest.'));
+    make('p', { class: 'note' }, 'Worst looks first; click a heading to sort otherwise, plots and pictures follow. Looks: points for flaps, unsupported surface, leaning walls, slivers, edges askew, eaves that are not level, more triangles than the source. Own g: metres that one pixel covers, from where on the layer would do for this building. 95 % and error (the largest): distances in metres from the source to the layer. Layer 0 is the coarsest.'));
   update();
 }
 
@@ -187,6 +193,14 @@ function measuresOf(b) {
     make('p', { class: 'note' }, 'g: in force; own g: what this building needs by itself. Deviation: largest distance to the finest layer, both ways. The others: from what was taken of the source to the layer.'));
 }
 
+function looksOf(b) {
+  const rows = b.own.filter((l) => l?.looks).map((l) => [layerCell(l.layer), verdictText(l), percent(l.looks.upright), percent(l.looks.aligned), percent(l.looks.level_eaves),
+    whole(l.looks.narrow), l.looks.flaps.toFixed(1), l.looks.unsupported.toFixed(1), percent(l.looks.triangles_ratio)]);
+  return make('details', {}, make('summary', {}, 'Looks'),
+    make('div', { class: 'wide fit' }, table(['Layer', 'Verdict', 'Walls upright', 'Edges in the plan\u2019s directions', 'Eaves level', 'Slivers', 'Flaps m²', 'Unsupported m²', 'Triangles of the source'], rows)),
+    make('p', { class: 'note' }, 'A red ring in the picture is where the heaviest fault is worst. docs/report.md says what each number is.'));
+}
+
 function fillCard(card) {
   loader.unobserve(card);
   if (card.childElementCount > 1) return;
@@ -199,6 +213,7 @@ function fillCard(card) {
   card.append(...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
     make('div', { class: 'strip' }, ...strip));
   if (b.left_out.length) card.append(make('p', { class: 'note' }, `Left out of the source: ${leftOut(b)}.`));
+  if (b.own.some((l) => l?.looks)) card.append(looksOf(b));
   if (b.own.some((l) => l && !l.failure)) card.append(measuresOf(b));
   if (b.warnings.length) card.append(make('details', { class: 'warn' }, make('summary', {}, count(b.warnings.length, 'warning')), make('ul', {}, ...b.warnings.map((w) => make('li', {}, w)))));
 }
@@ -215,7 +230,7 @@ function showPictures() {
   const card = (layerCount + 1) * (Math.max(width, 96) + 8) + 24, withPictures = pictures.filter((own) => own.length).length;
   const cards = make('div', { class: 'cards', style: { '--columns': layerCount + 1, '--card': `${card}px`, '--tall': `${Math.round(width * 0.75) + 85}px` } });
   const swatch = (color, text) => make('span', {}, make('span', { class: 'swatch', style: { '--c': color } }), text);
-  box.append(make('p', { class: 'soft' }, 'Each building through one camera, from where its source shows most. Surfaces have the colour of the layer on which their part appears; dark red: seen from behind.'),
+  box.append(make('p', { class: 'soft' }, 'Each building through one camera, from where its source shows most. Surfaces have the colour of the layer on which their part appears; dark red: seen from behind; red ring: where the looks are worst.'),
     make('div', { class: 'legend' }, ...layers.map((k) => swatch(colorOf(k), `appears on layer ${k}`)), swatch('#bcbec0', 'of no segment (base, closures)')));
   if (withPictures < buildings.length) box.append(make('p', { class: 'note' }, `${whole(withPictures)} of ${whole(buildings.length)} buildings have pictures.`));
   box.append(cards);

@@ -10,6 +10,7 @@
 #include "log.h"
 #include "measure/consistency.h"
 #include "measure/light_field.h"
+#include "measure/looks.h"
 #include "measure/metrics.h"
 #include "numbers.h"
 
@@ -20,7 +21,7 @@ struct EvalArguments {
   std::string reference, model, truth;
   ReadOptions read;
   DistanceOptions distance;
-  bool has_lfd = false;
+  bool has_lfd = false, has_parts = false;
   int threads = 0;
 };
 
@@ -31,6 +32,14 @@ void need_silhouettes(const Source& reference, const Source& model) {
 }
 
 using Json = nlohmann::ordered_json;
+
+void add_light_fields(const Source& reference, const Source& model, Json& json) {
+  need_silhouettes(reference, model);
+  json["light_field_distance"] = light_field_distance(describe_light_fields(reference.mesh),
+                                                      describe_light_fields(model.mesh));
+  json["light_field_distance_program"] =
+      light_field_distance(describe_as_program(reference.mesh), describe_as_program(model.mesh));
+}
 
 Json read_report(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "report.json").string();
@@ -62,6 +71,19 @@ std::vector<Mesh> read_layers(const std::string& folder, const std::string& name
   return meshes;
 }
 
+Json parts_json(const std::vector<PlacedPart>& parts) {
+  Json json = Json::array();
+  for (const PlacedPart& p : parts)
+    json.push_back({{"building", p.building},
+                    {"type", name_of(p.kind)},
+                    {"instance", p.instance},
+                    {"depth", p.depth},
+                    {"seen", p.is_seen},
+                    {"first", p.first},
+                    {"shown", p.near}});
+  return json;
+}
+
 /// Consistency of the layers in a folder that `build` or `export` wrote.
 int eval_truth(const EvalArguments& a) {
   const Truth truth = read_truth(a.truth);
@@ -85,9 +107,10 @@ int eval_truth(const EvalArguments& a) {
     const auto placed = place_parts(shown, *named, read_layers(a.reference, name, own));
     parts.insert(parts.end(), placed.begin(), placed.end());
   }
-  const Json json{{"truth", a.truth},
-                  {"buildings", judged},
-                  {"types", Json::parse(consistency_json(tally_parts(parts, layers)))}};
+  Json json{{"truth", a.truth},
+            {"buildings", judged},
+            {"types", Json::parse(consistency_json(tally_parts(parts, layers)))}};
+  if (a.has_parts) json["parts"] = parts_json(parts);
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
@@ -120,13 +143,12 @@ int eval(const EvalArguments& a) {
       {"mean_distance_back", d.mean_b_to_a},
       {"rms_distance", d.rms_a_to_b},
       {"samples", a.distance.samples}};
-  if (a.has_lfd) {
-    need_silhouettes(reference, model);
-    json["light_field_distance"] = light_field_distance(describe_light_fields(reference.mesh),
-                                                        describe_light_fields(model.mesh));
-    json["light_field_distance_program"] =
-        light_field_distance(describe_as_program(reference.mesh), describe_as_program(model.mesh));
-  }
+  const LookGauge gauge(reference);
+  json["source"] = {{"faces", reference.mesh.faces.size()},
+                    {"noise", gauge.source().noise},
+                    {"edge", gauge.source().edge}};
+  json["looks"] = Json::parse(looks_json(gauge.look_at(model.mesh)));
+  if (a.has_lfd) add_light_fields(reference, model, json);
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
@@ -143,6 +165,8 @@ Run add_eval(CLI::App& app) {
   app.add_option("--truth", a->truth,
                  "truth.json of synth, or labels: on which layer the parts of each kind appear")
       ->check(CLI::ExistingFile);
+  app.add_flag("--parts", a->has_parts,
+               "with --truth: every part too, its relief and how much of it each layer shows");
   add_input_options(app, a->read);
   app.add_option("--samples", a->distance.samples, "area-uniform samples a side")
       ->check(number_between(1, 100000000));

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "closing.h"
 #include "core/error.h"
 #include "core/flat.h"
 #include "core/rays.h"
@@ -24,78 +24,45 @@ using Json = nlohmann::ordered_json;
 constexpr double kPresentShare = 0.75;
 constexpr double kNear = 0.25;      // metres at most: a scan has no roof under its dormers, and a
                                     // layer's roof may lie half a relief from them
-constexpr double kNearShare = 0.5;  // of the relief
-constexpr double kSpacing = 0.1;    // metres between samples
-constexpr int kLeastSamples = 20;
-constexpr double kReliefRank = 0.9;    // of the samples' distances, where the relief is not said
+constexpr double kNearShare = 0.5;  // of the relief: nearer to the part than to the closed building
+constexpr double kLeastSeen = 0.1;  // m² that tell
 constexpr double kLeastRelief = 0.02;  // metres
-
-// Evenly over a triangle, about one a square of kSpacing.
-void sample_face(const Mesh& mesh, const Face& f, std::vector<Vec3>& samples) {
-  const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
-  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  const int n = std::clamp(static_cast<int>(longest / kSpacing), 1, 200);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; i + j < n; ++j) {
-      const double u = (i + 1.0 / 3) / n, v = (j + 1.0 / 3) / n;
-      samples.push_back(a + u * (b - a) + v * (c - a));
-    }
-}
 
 struct SampledPart {
   TruthPart truth;
-  std::vector<Vec3> samples;
+  std::vector<PartSample> samples;  // those that tell
 };
 
-// How near counts as there.
-double reach(const TruthPart& part) { return std::min(kNear, kNearShare * part.depth); }
+/// How near counts as there.
+double reach(double relief) { return std::min(kNear, kNearShare * relief); }
 
-double distance_to(const RayScene& mesh, const Vec3& x) {
-  const NearestPoint near = mesh.nearest(x);
-  return near.triangle >= 0 ? near.distance : std::numeric_limits<double>::infinity();
+SampledPart sample_part(const ClosedBuilding& building, const TruthPart& truth) {
+  PartRelief relief = building.sample(truth);
+  SampledPart part{truth, std::move(relief.samples)};
+  if (part.truth.depth < 0) part.truth.depth = std::max(kLeastRelief, relief.depth);
+  const double least = std::max(kLeastRelief, reach(part.truth.depth));
+  std::erase_if(part.samples, [&](const PartSample& s) { return s.relief < least; });
+  return part;
 }
 
-// Finds the relief where it is not said, and keeps the samples that tell.
-void keep_telling(SampledPart& part, const RayScene& main_building) {
-  std::vector<double> distance;
-  for (const Vec3& x : part.samples) distance.push_back(distance_to(main_building, x));
-  if (part.truth.depth < 0) {
-    std::vector<double> sorted = distance;
-    std::sort(sorted.begin(), sorted.end());
-    const double relief =
-        sorted.empty() ? 0 : sorted[static_cast<std::size_t>(kReliefRank * (sorted.size() - 1))];
-    part.truth.depth = std::max(kLeastRelief, std::isfinite(relief) ? relief : 0);
-  }
-  std::vector<Vec3> telling;
-  for (std::size_t i = 0; i < distance.size(); ++i)
-    if (distance[i] > reach(part.truth)) telling.push_back(part.samples[i]);
-  part.samples = std::move(telling);
+/// Whether the mesh has surface on the line through the sample that is nearer to it than to the
+/// closed building.
+bool is_shown(const PartSample& s, double depth, const RayScene& mesh) {
+  const double near = reach(std::isfinite(s.relief) ? s.relief : depth);
+  return mesh.is_occluded(s.point - near * s.along, s.along, 0, 2 * near);
 }
 
-std::vector<SampledPart> sample_parts(const Source& source, const TruthBuilding& truth) {
-  std::vector<SampledPart> parts;
-  std::map<int, std::size_t> part_of;
-  for (const TruthPart& p : truth.parts) {
-    part_of[p.instance] = parts.size();
-    parts.push_back({p, {}});
-  }
-  Mesh rest{source.mesh.vertices, {}};
-  for (std::size_t f = 0; f < source.mesh.faces.size(); ++f) {
-    const int object = source.face_object[f];
-    if (const auto at = part_of.find(object); at != part_of.end())
-      sample_face(source.mesh, source.mesh.faces[f], parts[at->second].samples);
-    if (std::binary_search(truth.main_building.begin(), truth.main_building.end(), object))
-      rest.faces.push_back(source.mesh.faces[f]);
-  }
-  const RayScene main_building(rest);
-  for (SampledPart& part : parts) keep_telling(part, main_building);
-  return parts;
+double telling_area(const SampledPart& part) {
+  double area = 0;
+  for (const PartSample& s : part.samples) area += s.area;
+  return area;
 }
 
 double share_near(const SampledPart& part, const RayScene& mesh) {
-  std::size_t near = 0;
-  for (const Vec3& x : part.samples) near += distance_to(mesh, x) <= reach(part.truth);
-  return static_cast<double>(near) / static_cast<double>(part.samples.size());
+  const auto shown =
+      std::count_if(part.samples.begin(), part.samples.end(),
+                    [&](const PartSample& s) { return is_shown(s, part.truth.depth, mesh); });
+  return static_cast<double>(shown) / static_cast<double>(part.samples.size());
 }
 
 TruthBuilding read_synth_building(const nlohmann::json& b) {
@@ -200,14 +167,16 @@ std::vector<PlacedPart> place_parts(const Source& source, const TruthBuilding& t
   std::vector<RayScene> scenes;
   for (const Mesh& mesh : layers) scenes.emplace_back(mesh);
   const int count = static_cast<int>(layers.size());
+  const ClosedBuilding building(source, truth);
   std::vector<PlacedPart> placed;
-  for (const SampledPart& part : sample_parts(source, truth)) {
+  for (const TruthPart& judged : truth.parts) {
+    const SampledPart part = sample_part(building, judged);
     PlacedPart p{.building = truth.name,
                  .kind = part.truth.kind,
                  .instance = part.truth.instance,
                  .level = part.truth.level,
                  .depth = part.truth.depth,
-                 .is_seen = part.samples.size() >= kLeastSamples,
+                 .is_seen = telling_area(part) >= kLeastSeen,
                  .first = -1,
                  .present = std::vector<char>(count, 0),
                  .near = std::vector<double>(count, 0)};

@@ -1,10 +1,14 @@
 // Beside the rooms: given a ground truth of parts, do parts of a kind fall on the same layer in
 // every building?
 //
-// A part counts as present in a mesh when three quarters of its telling samples lie within its
-// reach of the mesh, which is half its relief, at most 0.25 m; telling are points on the part's own
-// faces that are farther than that from the faces of the main building. This needs no segments, so
-// any chain of meshes can be judged. A part appears on the first layer from which on it is present.
+// A part counts as present in a mesh when three quarters of its telling samples are shown. A sample
+// on the part's own faces is shown where the mesh has surface on the line along its side's own
+// direction that is nearer to it than to the building with the part closed (closing.h), and no
+// farther than 0.25 m. So a recess is there only where its pane is: the wall before it does not
+// count, nor does the edge of its hole, sideways. Telling are samples that stand out of the closed
+// building by more than half the part's relief, 0.25 m at most and 2 cm at least. This needs no
+// segments, so any chain of meshes can be judged. A part appears on the first layer from which on
+// it is present.
 #pragma once
 
 #include <string>

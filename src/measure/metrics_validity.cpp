@@ -18,86 +18,17 @@
 #include "core/parallel.h"
 #include "core/union_find.h"
 #include "metrics.h"
+#include "welded.h"
 
 namespace colod {
 namespace {
 
 using FaceBox = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Face*>;
 
-constexpr double kCoplanarDistance = 1e-4;  // m
-constexpr double kCoplanarAngleDeg = 0.1;
-constexpr double kReliableHeight = 5e-3;       // m; a thinner face's normal says little
 constexpr std::size_t kPairsAtOnce = 1 << 20;  // bounds the memory of the candidate pairs
 
 CGAL::Bbox_3 to_cgal(const Box& box) {
   return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
-}
-
-/// The faces worth looking at, over welded vertices.
-struct Welded {
-  std::vector<Vec3> points;
-  std::vector<Face> faces;     // three different vertices each, all finite
-  std::int64_t collapsed = 0;  // faces that lost a vertex by welding, or are not finite
-};
-
-bool is_less(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-Welded weld(const Mesh& mesh) {
-  std::vector<int> order;
-  for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i)
-    if (mesh.vertices[i].allFinite()) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return is_less(mesh.vertices[i], mesh.vertices[j]); });
-  Welded welded;
-  std::vector<int> point_of_vertex(mesh.vertices.size(), -1);
-  for (int i : order) {
-    if (welded.points.empty() || welded.points.back() != mesh.vertices[i])
-      welded.points.push_back(mesh.vertices[i]);
-    point_of_vertex[i] = static_cast<int>(welded.points.size()) - 1;
-  }
-  for (const Face& f : mesh.faces) {
-    const Face g = {point_of_vertex[f[0]], point_of_vertex[f[1]], point_of_vertex[f[2]]};
-    const bool is_face =
-        std::min({g[0], g[1], g[2]}) >= 0 && g[0] != g[1] && g[1] != g[2] && g[2] != g[0];
-    if (is_face) welded.faces.push_back(g);
-    welded.collapsed += !is_face;
-  }
-  return welded;
-}
-
-/// One use of an edge by a face; sorted, the uses of one edge are neighbours.
-struct EdgeUse {
-  int low, high;   // vertices
-  int face, side;  // side s of a face runs from its vertex s to its vertex s + 1
-  bool is_forward;
-
-  bool operator<(const EdgeUse& o) const {
-    return std::tie(low, high, face, side) < std::tie(o.low, o.high, o.face, o.side);
-  }
-  bool is_same_edge(const EdgeUse& o) const { return low == o.low && high == o.high; }
-};
-
-std::vector<EdgeUse> sorted_edge_uses(const std::vector<Face>& faces) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * faces.size());
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-    for (int s = 0; s < 3; ++s) {
-      const int a = faces[f][s], b = faces[f][(s + 1) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), f, s, a < b});
-    }
-  std::sort(uses.begin(), uses.end());
-  return uses;
-}
-
-/// Calls visit(first, last) for the uses of each edge.
-template <typename Visit>
-void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    for (j = i + 1; j < uses.size() && uses[j].is_same_edge(uses[i]);) ++j;
-    visit(i, j);
-  }
 }
 
 void count_edges(const std::vector<EdgeUse>& uses, Validity& v) {
@@ -189,74 +120,6 @@ int count_enclosed(const Welded& m, const std::vector<int>& component, int compo
                                   look(b, a);
                                 });
   return static_cast<int>(std::count(is_enclosed.begin(), is_enclosed.end(), 1));
-}
-
-/// Neighbours over edges with exactly two faces, −1: none.
-std::vector<std::array<int, 3>> face_neighbours(const Welded& m, const std::vector<EdgeUse>& uses) {
-  std::vector<std::array<int, 3>> neighbours(m.faces.size(), {-1, -1, -1});
-  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-    if (last - first != 2) return;
-    const EdgeUse &a = uses[first], &b = uses[first + 1];
-    neighbours[a.face][a.side] = b.face;
-    neighbours[b.face][b.side] = a.face;
-  });
-  return neighbours;
-}
-
-/// A face's unit normal (zero when degenerate), area and height over its longest side.
-struct FaceShape {
-  Vec3 normal = Vec3::Zero();
-  double area = 0, height = 0;
-};
-
-FaceShape face_shape(const Welded& m, const Face& f) {
-  const Vec3 a = m.points[f[0]], ab = m.points[f[1]] - a, ac = m.points[f[2]] - a;
-  const Vec3 cross = ab.cross(ac);
-  const double twice = cross.norm();
-  FaceShape shape;
-  if (!(twice > 0)) return shape;
-  shape.normal = cross / twice;
-  shape.area = 0.5 * twice;
-  shape.height = twice / std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-  return shape;
-}
-
-/// Per face the number of its polygon, −1: degenerate. Grown from the largest face left, every face
-/// judged against the seed's plane, so that a gently curved surface does not count as one polygon.
-std::vector<int> find_polygons(const Welded& m, const std::vector<std::array<int, 3>>& neighbours,
-                               const std::vector<FaceShape>& shapes) {
-  const double min_cos = std::cos(kCoplanarAngleDeg * M_PI / 180);
-  std::vector<int> order(m.faces.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int i, int j) { return shapes[i].area > shapes[j].area; });
-  std::vector<int> polygon(m.faces.size(), -1);
-  const auto is_coplanar = [&](int seed, int face) {
-    const double cos = shapes[seed].normal.dot(shapes[face].normal);
-    if (cos < (shapes[face].height < kReliableHeight ? 0.0 : min_cos)) return false;
-    const Vec3 base = m.points[m.faces[seed][0]];
-    for (int v : m.faces[face])
-      if (!(std::abs(shapes[seed].normal.dot(m.points[v] - base)) <= kCoplanarDistance))
-        return false;
-    return true;
-  };
-  int polygons = 0;
-  for (int seed : order) {
-    if (polygon[seed] >= 0 || shapes[seed].area == 0) continue;  // a degenerate face is no polygon
-    std::vector<int> stack = {seed};
-    polygon[seed] = polygons;
-    while (!stack.empty()) {
-      const int face = stack.back();
-      stack.pop_back();
-      for (int next : neighbours[face])
-        if (next >= 0 && polygon[next] < 0 && is_coplanar(seed, next)) {
-          polygon[next] = polygons;
-          stack.push_back(next);
-        }
-    }
-    ++polygons;
-  }
-  return polygon;
 }
 
 void measure_polygons(const Welded& m, const std::vector<EdgeUse>& uses,

@@ -19,7 +19,7 @@ namespace colod {
 namespace {
 
 constexpr double kMargin = 1.06;  ///< the frame is this much larger than the box
-constexpr Color kLightGrey{205, 205, 200}, kBackFace{150, 25, 25};
+constexpr Color kLightGrey{205, 205, 200}, kBackFace{150, 25, 25}, kRing{220, 0, 60};
 constexpr double kInk = 0.25;        ///< how bright a line is
 constexpr double kCrease_deg = 25;   ///< two faces without facets are told apart from here on
 constexpr double kDepthStep = 0.01;  ///< of the box's diagonal: a line between surfaces
@@ -290,6 +290,19 @@ std::string fit_text(std::string text, int width) {
   return text.size() <= most ? text : text.substr(0, most - std::min<std::size_t>(most, 2)) + "..";
 }
 
+/// A ring about a place, a twelfth of the picture across and a hundredth thick.
+void draw_ring(const Vec3& place, const Camera& c, Image& image) {
+  const Vec3 p = (place - c.center) / (c.step * c.samples);
+  const Vec2 middle(p.dot(c.right) + 0.5 * image.width, 0.5 * image.height - p.dot(c.up));
+  const double radius = 0.04 * image.width, thick = std::max(1.0, 0.01 * image.width);
+  if (!middle.allFinite()) return;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (std::abs((Vec2(x + 0.5, y + 0.5) - middle).norm() - radius) < 0.5 * thick)
+        std::copy(kRing.begin(), kRing.end(),
+                  image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x));
+}
+
 }  // namespace
 
 Image render_preview(const Mesh& mesh, const PreviewOptions& options,
@@ -305,7 +318,7 @@ Image render_preview(const Mesh& mesh, const PreviewOptions& options,
   const auto at = [&](int x, int y) -> const Sample& {
     return samples.all[static_cast<std::size_t>(y) * c.width + x];
   };
-  return average(c, samples.window, [&](int x, int y) -> Vec3 {
+  Image image = average(c, samples.window, [&](int x, int y) -> Vec3 {
     const Sample& s = at(x, y);
     Vec3 color = as_vector(kBackground);
     if (s.face >= 0) {
@@ -318,6 +331,8 @@ Image render_preview(const Mesh& mesh, const PreviewOptions& options,
                               (y + 1 < c.height && is_edge(s, at(x, y + 1), -c.up, c, surfaces)));
     return is_line ? Vec3(kInk * color) : color;
   });
+  for (const Vec3& place : options.marks) draw_ring(place, c, image);
+  return image;
 }
 
 Image render_preview(const PointCloud& cloud, const PreviewOptions& options) {

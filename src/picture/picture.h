@@ -26,6 +26,8 @@ struct PreviewOptions {
   int samples = 2;            ///< rays along a pixel's side
   bool has_edges = true;      ///< dark lines where neighbouring pixels see different facets
   Box box;  ///< what to frame; empty: the mesh's own box. The same box gives the same camera
+  std::vector<Vec3> marks =
+      {};  ///< places of a mesh that get a red ring, also those that are hidden
 };
 
 /// `facet_of_face` (edges, empty: by normal) and `color_of_face` (empty: light grey) are per face.

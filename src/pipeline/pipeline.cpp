@@ -158,7 +158,14 @@ void unturn(PolygonMesh& mesh, const Frame& frame) {
   for (auto& f : mesh.facets) f.normal = turn.to_world(f.normal);
 }
 
-void measure(const DistanceGauge& source, Layer& layer) {
+void unturn(Layer& layer, const Frame& frame) {
+  unturn(layer.mesh, frame);
+  for (FaultPlace& worst : layer.looks.worst)
+    worst.place = Frame{Vec3::Zero(), frame.yaw}.to_world(worst.place);
+}
+
+void measure(const DistanceGauge& source, const LookGauge& looks, Layer& layer) {
+  layer.looks = looks.look_at(layer.mesh.mesh());
   layer.distances = source.measure_to(layer.mesh.mesh());
   layer.validity = check_validity(layer.mesh.mesh());
   layer.validity.polygons = static_cast<int>(layer.mesh.facets.size());
@@ -379,10 +386,11 @@ void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
     }
     replace_invented(surface, options.rules.has(Rule::kVolume), b);
     const DistanceGauge source(b.source, {}, parted(b.planes));
+    const LookGauge looks(b.source, surface);
     for (Layer& layer : b.layers)
-      if (layer.failure.empty()) measure(source, layer);
+      if (layer.failure.empty()) measure(source, looks, layer);
     look_at_layers(b);
-    for (Layer& layer : b.layers) unturn(layer.mesh, b.frame);
+    for (Layer& layer : b.layers) unturn(layer, b.frame);
   } catch (const std::exception& e) {
     b.layers.clear();
     b.failure = b.source.name + ": " + e.what();

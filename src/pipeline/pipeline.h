@@ -12,6 +12,7 @@
 #include "core/options.h"
 #include "extraction/extraction.h"
 #include "measure/consistency.h"
+#include "measure/looks.h"
 #include "measure/metrics.h"
 #include "measure/switching.h"
 #include "read/frame.h"
@@ -42,6 +43,7 @@ struct Layer {
   int segments = 0;     ///< on layers ≤ this one
   Validity validity;    ///< of the mesh as written (doubles), self-intersections included
   Distances distances;  ///< source against the layer
+  Looks looks;          ///< places are in the frame of the mesh
   LayerSight sight;     ///< against the finest layer, for switching
   double own_gsd = 0;  ///< metres a pixel: where the layer may stand by this building's measure …
   double gsd = 0;      ///< … and where it does (set by decide_switches)

@@ -34,7 +34,15 @@ Json parameters_json(const Options& options) {
 /// A measure that may be unknown, which is negative inside the program and null in the report.
 Json known(double value) { return value < 0 ? Json() : Json(value); }
 
-Json layer_json(const Layer& layer) {
+/// As `colod eval` prints them, places in the world's frame.
+Json looks_in_world(Looks looks, const Vec3& origin) {
+  for (FaultPlace& worst : looks.worst) worst.place += origin;
+  Json json = Json::parse(looks_json(looks));
+  json["triangles_ratio"] = known(looks.triangles_ratio);
+  return json;
+}
+
+Json layer_json(const Layer& layer, const Vec3& origin) {
   Json json{{"layer", layer.layer}, {"segments", layer.segments}};
   if (!layer.failure.empty()) {
     json["failure"] = layer.failure;
@@ -59,6 +67,7 @@ Json layer_json(const Layer& layer) {
   json["gsd"] = layer.gsd;
   json["own_gsd"] = layer.own_gsd;
   json["invented"] = known(layer.invented);
+  json["looks"] = looks_in_world(layer.looks, origin);
   json["like_finer"] = layer.sight.is_like_finer;
   if (layer.stand_in != StandIn::kNone)
     json["stand_in"] = {{"reason", to_string(layer.stand_in)},
@@ -94,7 +103,7 @@ Json building_json(const Building& b, bool has_prior) {
   json["left_out_total"] = left_out_json(total_of(b.left_out));
   json["left_out_total"].erase("reason");
   json["layers"] = Json::array();
-  for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer));
+  for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer, b.frame.origin));
   json["timings"] = {{"read", b.timings.read},
                      {"planes", b.timings.planes},
                      {"visibility", b.timings.visibility},

@@ -45,6 +45,15 @@ Mesh local_mesh(const Building& b, const Layer& layer) {
   return mesh;
 }
 
+/// Where the heaviest fault of its looks that has a place is worst, in the building's own frame.
+std::vector<Vec3> marks_of(const Building& b, const Layer& layer) {
+  for (const LookFault fault : judge_looks(layer.looks).faults)
+    if (static_cast<int>(fault) < kPlacedFaults)
+      return {Frame{Vec3::Zero(), b.frame.yaw}.to_local(
+          layer.looks.worst[static_cast<int>(fault)].place)};
+  return {};
+}
+
 std::vector<Color> colors_of(const Building& b, const PolygonMesh& mesh) {
   std::vector<Color> colors;
   for (const int facet : mesh.facet_of_triangle) {
@@ -124,6 +133,7 @@ std::vector<std::string> draw_building(const Building& b, const PictureOptions& 
     pictures.emplace_back();
     if (layers[k].faces.empty()) continue;
     const PolygonMesh& mesh = b.layers[k].mesh;
+    view.marks = marks_of(b, b.layers[k]);
     pictures.back() = encode_small_png(
         render_preview(layers[k], view, mesh.facet_of_triangle, colors_of(b, mesh)),
         options.most_bytes);

@@ -24,7 +24,8 @@ PictureOptions picture_options(std::size_t buildings, int layers);
 
 /// PNG bytes of the source, then of each layer, coarsest first; an empty string where there is
 /// nothing to see. A part of a layer has the colour of the layer on which its segment appears, what
-/// belongs to no segment is grey. Main walls always stand at the same angle, and of the four such
+/// belongs to no segment is grey; a red ring is where its looks are worst (measure/looks.h). Main
+/// walls always stand at the same angle, and of the four such
 /// views it is the one from which the source shows most. Deterministic, runs in parallel.
 std::vector<std::string> draw_building(const Building& building, const PictureOptions& options);
 

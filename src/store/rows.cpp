@@ -14,6 +14,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Validity, vertices, faces, polyg
                                                 nonmanifold_vertices, self_intersections,
                                                 degenerate_faces, components, enclosed_components,
                                                 volume, area)
+void to_json(nlohmann::json& json, const FaultPlace& f) {
+  json = {f.size, f.place.x(), f.place.y(), f.place.z()};
+}
+void from_json(const nlohmann::json& json, FaultPlace& f) {
+  f.size = json.at(0);
+  for (int i = 0; i < 3; ++i) f.place[i] = json.at(1 + i);
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Looks, triangles_ratio, wall_area, upright, aligned,
+                                                level_eaves, narrow, unsupported, flaps, worst)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spread, mean, p95, p99, max)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Distances, a_to_b, b_to_a, relative, mean_a_to_b, mean_b_to_a,
                                    rms_a_to_b, rms_b_to_a, taken)
@@ -208,7 +217,7 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
     facets.push_back({f.normal, f.plane, static_cast<std::int32_t>(f.rings.size())});
     rings.insert(rings.end(), f.rings.begin(), f.rings.end());
   }
-  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO layer VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(layer.layer)
       .bind(layer.segments)
@@ -225,6 +234,7 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
       .bind(layer.mesh.facet_of_triangle)
       .bind(static_cast<int>(layer.stand_in))
       .bind(layer.invented)
+      .bind(Json(layer.looks).dump())
       .run();
 }
 
@@ -346,7 +356,8 @@ void Store::Impl::get_layers(Building& b) const {
   Statement s = read(
       "SELECT layer, segments, is_like_finer, deviation, profile, failure, validity, distances, "
       "vertices, facets, "
-      "rings, triangles, facet_of_triangle, stand_in, invented FROM layer WHERE building = ?1 "
+      "rings, triangles, facet_of_triangle, stand_in, invented, looks FROM layer WHERE building = "
+      "?1 "
       "ORDER BY "
       "layer");
   s.bind(b.source.name);
@@ -376,6 +387,7 @@ void Store::Impl::get_layers(Building& b) const {
     layer.mesh.facet_of_triangle = s.array<int>();
     layer.stand_in = stand_in_of(s.integer());
     layer.invented = s.real();
+    read_json(s.text(), path, "measures", [&](const Json& json) { json.get_to(layer.looks); });
     check_place(layer.mesh.vertices, path);
     check_range(layer.mesh, path);
     b.layers.push_back(std::move(layer));

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 8;  // PRAGMA user_version
+constexpr int kFormat = 9;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -37,7 +37,7 @@ CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE
   segments BLOB, share REAL, PRIMARY KEY(building, id)) WITHOUT ROWID;
 CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
   segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
-  facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
+  facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, looks TEXT NOT NULL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
 )sql";
 
 Json options_json(const Options& o) {

@@ -45,6 +45,12 @@ const column = (page, index) => page.locator(`#table tbody tr > :nth-child(${ind
 const headings = (page) => page.locator('#table thead tr:last-child th').allTextContents();
 const number = (text) => Number(text.replace(/[^0-9.]/g, ''));
 
+/** As the page sorts them at first: by the worst layer's points for looks. */
+const byLooks = (all) => {
+  const points = (b) => Math.max(...b.layers.map((l) => l.looks.points));
+  return [...all].sort((a, b) => points(b) - points(a));
+};
+
 test('the report opens from the disk without a request and shows every building', async () => {
   const { page, requests, errors } = await openReport('local', { width: 1400, height: 900 });
   const report = readJson(path.join(root, 'local', 'report.json'));
@@ -133,14 +139,35 @@ test("a building's card has its g, deviation and distances on every layer", asyn
   const { page, errors } = await openReport('local', { width: 1400, height: 900 });
   const { buildings } = readJson(path.join(root, 'local', 'report.json'));
   const own = (await headings(page)).indexOf('Own g');
-  assert.deepEqual(await column(page, own), buildings.map(({ layers: [l] }) => (l.like_finer ? 'as 1' : l.own_gsd.toFixed(3))));
+  const shown = byLooks(buildings);
+  assert.deepEqual(await column(page, own), shown.map(({ layers: [l] }) => (l.like_finer ? 'as 1' : l.own_gsd.toFixed(3))));
   const card = page.locator('.card').first();
   await card.scrollIntoViewIfNeeded();
   await card.locator('summary', { hasText: 'Switching' }).click();
-  const rows = await card.locator('tbody tr').evaluateAll((all) => all.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));
-  assert.deepEqual(rows, buildings[0].layers.map((l) => [...[l.gsd, l.own_gsd, l.deviation].map((x) => (l.like_finer ? `as ${l.layer + 1}` : x > 0 ? x.toFixed(3) : '0')),
+  const rows = await card.locator('details:has(summary:text("Switching")) tbody tr').evaluateAll((all) => all.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));
+  assert.deepEqual(rows, shown[0].layers.map((l) => [...[l.gsd, l.own_gsd, l.deviation].map((x) => (l.like_finer ? `as ${l.layer + 1}` : x > 0 ? x.toFixed(3) : '0')),
     ...['mean', 'p95', 'p99', 'max'].map((key) => l.distance[key].toFixed(3))]));
   await screenshot(page, 'report-card');
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test('the worst looks come first, and a card says what is wrong', async () => {
+  const file = changeReport('local', 'looks.html', ({ buildings }) => {
+    Object.assign(buildings[3].layers[1].looks, { points: 60, faults: ['flap', 'leaning'], flaps: 12.34, upright: 0.5 });
+  });
+  const { page, errors } = await openReport('local', { width: 1400, height: 900 }, file);
+  const looks = (await headings(page)).indexOf('Looks');
+  assert.equal(await page.locator('#table thead tr:last-child th').nth(looks).getAttribute('aria-sort'), 'descending');
+  const shown = (await column(page, looks)).map(number);
+  assert.equal(shown[0], 60);
+  assert.ok(shown.every((x, i) => i === 0 || x <= shown[i - 1]), shown.join());
+  const card = page.locator('.card').first();
+  assert.equal(await card.getAttribute('id'), 'b3');
+  await card.scrollIntoViewIfNeeded();
+  await card.locator('summary', { hasText: 'Looks' }).click();
+  const row = await card.locator('details:has(summary:text("Looks")) tbody tr').nth(1).textContent();
+  assert.match(row, /60: flaps, leaning walls50 %.*12\.3/);
   assert.deepEqual(errors, []);
   await page.close();
 });
@@ -154,9 +181,10 @@ test('what was left out is told, alike layers are named, and bytes may be missin
     for (const l of buildings.flatMap((b) => b.layers)) delete l.bytes;
   });
   const { page, errors } = await openReport('local', { width: 1400, height: 900 }, file);
-  assert.equal((await column(page, (await headings(page)).indexOf('Left out')))[0], '6.6 %');
-  const card = page.locator('.card').first();
+  assert.ok((await column(page, (await headings(page)).indexOf('Left out'))).includes('6.6 %'));
+  const card = page.locator('#b0');
   await card.scrollIntoViewIfNeeded();
+  await card.locator('.strip').waitFor();
   assert.match(await card.textContent(), /ground \(12\.3 m², 5\.6 %\), up to 7\.8 m away; pieces afloat \(1\.0 %\), up to 9\.1 m away/);
   assert.match(await card.locator('figcaption').nth(1).textContent(), /faces, as layer 1$/);
   assert.match((await page.locator('#switching tbody tr').allTextContents()).at(-1), /^Layer 0.*as layer 1/);

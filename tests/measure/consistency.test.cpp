@@ -1,5 +1,7 @@
 #include "measure/consistency.h"
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <fstream>
@@ -23,6 +25,58 @@ Source house() {
 }
 
 TruthBuilding truth(double depth = 1) { return {"house", {{ElementKind::kBay, 1, 1, depth}}, {0}}; }
+
+/// A quad as two faces.
+void add_quad(Mesh& m, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const int base = static_cast<int>(m.vertices.size());
+  m.vertices.insert(m.vertices.end(), {a, b, c, d});
+  m.faces.push_back({base, base + 1, base + 2});
+  m.faces.push_back({base, base + 2, base + 3});
+}
+
+/// An opening in the front (y = 0) of a body of 10 × 8 × 6 m; the pane is `depth` behind it.
+struct Opening {
+  double x0, x1, z0, z1, depth;
+};
+
+/// What is left of the front, then reveals, then the pane.
+std::array<Mesh, 3> front_of(const Opening& o) {
+  std::array<Mesh, 3> m;
+  const auto at = [](double x, double y, double z) { return Vec3(x, y, z); };
+  add_quad(m[0], at(0, 0, 0), at(o.x0, 0, 0), at(o.x0, 0, 6), at(0, 0, 6));
+  add_quad(m[0], at(o.x1, 0, 0), at(10, 0, 0), at(10, 0, 6), at(o.x1, 0, 6));
+  add_quad(m[0], at(o.x0, 0, o.z1), at(o.x1, 0, o.z1), at(o.x1, 0, 6), at(o.x0, 0, 6));
+  if (o.z0 > 0)
+    add_quad(m[0], at(o.x0, 0, 0), at(o.x1, 0, 0), at(o.x1, 0, o.z0), at(o.x0, 0, o.z0));
+  const double d = o.depth;
+  add_quad(m[1], at(o.x0, 0, o.z0), at(o.x0, d, o.z0), at(o.x0, d, o.z1), at(o.x0, 0, o.z1));
+  add_quad(m[1], at(o.x1, 0, o.z0), at(o.x1, 0, o.z1), at(o.x1, d, o.z1), at(o.x1, d, o.z0));
+  add_quad(m[1], at(o.x0, 0, o.z0), at(o.x1, 0, o.z0), at(o.x1, d, o.z0), at(o.x0, d, o.z0));
+  add_quad(m[1], at(o.x0, 0, o.z1), at(o.x0, d, o.z1), at(o.x1, d, o.z1), at(o.x1, 0, o.z1));
+  add_quad(m[2], at(o.x0, d, o.z0), at(o.x1, d, o.z0), at(o.x1, d, o.z1), at(o.x0, d, o.z1));
+  return m;
+}
+
+Mesh without_front() {
+  Mesh m = kBody;
+  std::erase_if(m.faces, [&](const Face& f) {
+    return std::all_of(f.begin(), f.end(), [&](int v) { return m.vertices[v].y() == 0; });
+  });
+  return m;
+}
+
+/// Body is object 0, the opening 1; whose the reveals are is not the same in all models.
+Source house_with(const Opening& o, bool has_own_reveals) {
+  const auto front = front_of(o);
+  Mesh mesh = test::join(without_front(), front[0]);
+  if (!has_own_reveals) mesh = test::join(mesh, front[1]);
+  const std::size_t body = mesh.faces.size();
+  if (has_own_reveals) mesh = test::join(mesh, front[1]);
+  Source s = test::as_source(test::join(mesh, front[2]), "house");
+  s.face_object.assign(body, 0);
+  s.face_object.resize(s.mesh.faces.size(), 1);
+  return s;
+}
 
 PlacedPart placed(const std::string& building, ElementKind kind, int first) {
   PlacedPart p;
@@ -56,6 +110,54 @@ TEST_CASE(
   for (int& object : bare.face_object) object = 0;
   CHECK(!place_parts(bare, truth(), {kBody}).at(0).is_seen);
   CHECK_THROWS_AS(place_parts(test::as_source(kBody), truth(), {kBody}), Error);
+}
+
+TEST_CASE("a recess is shown where its pane is, not where a wall closes it") {
+  const std::vector<Opening> openings = {{4, 4.5, 2, 2.5, 0},
+                                         {3, 4, 1, 2.5, 0},
+                                         {2, 5, 0.5, 3, 0},
+                                         {1, 9, 3, 3.6, 0},
+                                         {4, 5, 0, 2, 0}};  // the last: a door
+  for (Opening o : openings)
+    for (const double depth : {0.05, 0.1, 0.3, 0.6})
+      for (const double said : {-1.0, depth})
+        for (const bool has_own_reveals : {true, false}) {
+          o.depth = depth;
+          CAPTURE(o.x0, o.z0, depth, said, has_own_reveals);
+          const TruthBuilding windows{"house", {{ElementKind::kWindow, 1, 1, said}}, {0}};
+          const Source source = house_with(o, has_own_reveals);
+          const auto part_on = [&](const Mesh& layer) {
+            return place_parts(source, windows, {layer}).at(0);
+          };
+          Opening shallow = o, deep = o;
+          shallow.depth = 0.4 * depth, deep.depth = 1.2 * depth;
+          const PlacedPart closed = part_on(kBody);
+          CHECK(closed.is_seen);
+          CHECK(closed.depth == Approx(depth));
+          CHECK(closed.first == -1);
+          CHECK(closed.near.at(0) < 0.05);
+          CHECK(part_on(source.mesh).first == 0);
+          CHECK(part_on(source.mesh).near.at(0) > 0.95);
+          CHECK(part_on(house_with(shallow, true).mesh).first == -1);
+          if (depth < 0.3) CHECK(part_on(house_with(deep, true).mesh).near.at(0) > 0.6);
+        }
+}
+
+TEST_CASE("a pane that is flush with the wall is unseen; one in a bay is closed by the bay") {
+  const TruthBuilding flush{"house", {{ElementKind::kWindow, 1, 1, -1}}, {0}};
+  CHECK(!place_parts(house_with({3, 4, 1, 2.5, 0.01}, true), flush, {kBody}).at(0).is_seen);
+  // The house of the opening stands as a bay (object 2) before a long wall (object 0).
+  Source bay = house_with({3, 4, 1, 2.5, 0.1}, true);
+  for (int& object : bay.face_object) object = object == 0 ? 2 : 1;
+  const Mesh wall = test::box_mesh({-20, 8, 0}, {30, 9, 12});
+  bay.mesh = test::join(bay.mesh, wall);
+  bay.face_object.resize(bay.mesh.faces.size(), 0);
+  const TruthBuilding truth{
+      "house", {{ElementKind::kWindow, 1, 1, -1}, {ElementKind::kBay, 2, 1, -1}}, {0}};
+  const auto parts = place_parts(bay, truth, {test::join(kBody, wall)});
+  CHECK(parts.at(0).depth == Approx(0.1));
+  CHECK(parts.at(0).first == -1);
+  CHECK(parts.at(1).first == 0);
 }
 
 TEST_CASE("the tally counts instances, those that never appear, and buildings that agree") {
