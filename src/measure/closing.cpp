@@ -212,12 +212,12 @@ ClosedBuilding::~ClosedBuilding() = default;
 /// where models are open.
 bool ClosedBuilding::is_seen(const Vec3& x) const {
   constexpr std::array<double, 4> kElevations_deg = {-10, 3, 30, 60};
-  static const std::vector<Vec3> kViews = [&] {
-    std::vector<Vec3> views = ring_directions(32, kElevations_deg);
-    views.push_back(Vec3::UnitZ());
-    return views;
+  static const std::vector<Vec3> views = [&] {
+    std::vector<Vec3> rings = ring_directions(32, kElevations_deg);
+    rings.push_back(Vec3::UnitZ());
+    return rings;
   }();
-  return std::any_of(kViews.begin(), kViews.end(), [&](const Vec3& view) {
+  return std::any_of(views.begin(), views.end(), [&](const Vec3& view) {
     return !rays_.is_occluded(x, view, kSkin, std::numeric_limits<double>::infinity());
   });
 }

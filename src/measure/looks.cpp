@@ -286,12 +286,12 @@ bool LookGauge::Impl::is_unsupported(const RayScene& body, const Vec3& p,
                                      const Vec3& normal) const {
   if (distance(p) <= support || tops->are_above(p)) return false;
   constexpr std::array<double, 3> kElevations_deg = {3, 30, 60};
-  static const std::vector<Vec3> kViews = [&] {
-    std::vector<Vec3> views = ring_directions(24, kElevations_deg);
-    views.push_back(Vec3::UnitZ());
-    return views;
+  static const std::vector<Vec3> views = [&] {
+    std::vector<Vec3> rings = ring_directions(24, kElevations_deg);
+    rings.push_back(Vec3::UnitZ());
+    return rings;
   }();
-  return std::any_of(kViews.begin(), kViews.end(), [&](const Vec3& view) {
+  return std::any_of(views.begin(), views.end(), [&](const Vec3& view) {
     return view.dot(normal) > 0 &&
            !body.is_occluded(p, view, kSkin, std::numeric_limits<double>::infinity());
   });
