@@ -31,10 +31,11 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr const char* kEmptyLayer =
     "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
 
-/// What is melted has its relief's planes; all else is freed of its ground and inside first.
+/// What is melted, which nothing with exact round shapes is, has its relief's planes; all else is
+/// freed of its ground and inside first.
 void find_planes(Building& b, const Options& o) {
   Stopwatch watch(b.timings.planes);
-  if (o.rules.has(Rule::kRelief))
+  if (o.rules.has(Rule::kRelief) && find_rounds(b.source, o.rules).empty())
     if (std::optional<Relief> relief = find_relief(b.source.mesh)) {
       b.planes = relief_planes(b.source, *std::move(relief));
       return;

@@ -56,6 +56,16 @@ double mean_lean(const std::vector<Side>& sides) {
   return walls > 0 ? sum / walls : 0;
 }
 
+double exact_share(const std::vector<Side>& sides) {
+  double total = 0, exact = 0;
+  for (const Side& s : sides) {
+    const double z = std::abs(s.normal.z());
+    total += s.area;
+    if (z < kExactTurn || s.normal.head<2>().norm() < kExactTurn) exact += s.area;
+  }
+  return exact / total;
+}
+
 /// Faces by where they are, in cubes.
 class Cubes {
  public:
@@ -136,7 +146,9 @@ bool Melting::is_leaning() const { return lean > kLeastLean; }
 bool Melting::is_coarse() const {
   return bulge > kCoarseBulge && std::max(edge, kToldBulges * bulge) > kCoarse;
 }
-bool Melting::is_melted() const { return bulge > kExactBulge && (is_leaning() || is_coarse()); }
+bool Melting::is_melted() const {
+  return bulge > kExactBulge && exact < kMostExact && (is_leaning() || is_coarse());
+}
 double Melting::reach() const {
   return std::max({kLeastReach, kReachBulges * bulge, kReachEdges * edge});
 }
@@ -145,7 +157,7 @@ Melting measure_melting(const Mesh& mesh) {
   const std::vector<Side> sides = sides_of(mesh);
   if (sides.empty()) return {};
   const double edge = median_edge(mesh);
-  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides)};
+  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides), exact_share(sides)};
 }
 
 }  // namespace colod::relief

@@ -229,6 +229,18 @@ double explained_share(const Mesh& mesh, const Relief& relief, double reach) {
   return total > 0 ? near / total : 0;
 }
 
+/// 0..1 of the walls that are drawn: steep faces of the mesh over their area. Terrain has none.
+double supported_share(const Mesh& mesh, const Relief& relief) {
+  double drawn = 0, seen = 0;
+  for (const Relief::Part& part : relief.parts) {
+    if (!part.is_wall) continue;
+    for (const int f : part.faces) seen += face_area(mesh, mesh.faces[f]);
+    for (const std::vector<Vec3>& q : part.rings)
+      drawn += 0.5 * (q[2] - q[0]).cross(q[3] - q[1]).norm();
+  }
+  return drawn > 0 ? seen / drawn : 0;
+}
+
 }  // namespace
 
 std::optional<Relief> find_relief(const Mesh& mesh) {
@@ -244,7 +256,8 @@ std::optional<Relief> find_relief(const Mesh& mesh) {
   std::vector<std::vector<Piece>> pieces;
   for (Relief::Part& wall : walls_of(plan, pieces)) relief.parts.push_back(std::move(wall));
   share_out(mesh, plan, pieces, relief);
-  if (pieces.empty() || explained_share(mesh, relief, melting.reach()) < kExplained)
+  if (supported_share(mesh, relief) < kLeastSupport ||
+      explained_share(mesh, relief, melting.reach()) < kExplained)
     return std::nullopt;
   return relief;
 }
