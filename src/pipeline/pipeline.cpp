@@ -254,7 +254,13 @@ void drop_geometry(Building& b) {
   b.source.mesh = {};
   b.source.cloud = {};
   b.source.face_object = std::vector<int>();
+  b.source.look = {};
   b.planes = {};
+}
+
+void note_look(Building& b) {
+  b.has_texture = b.source.look.has_detail();
+  b.has_colors = !b.source.look.is_empty();
 }
 
 Building segment_building(Turn turn, const Options& options) {
@@ -269,6 +275,7 @@ Building segment_building(Turn turn, const Options& options) {
     if (options.rules.has(Rule::kHidden)) b.source = remove_hidden(std::move(b.source));
     find_segments(b, options);
     b.left_out = b.source.left_out;
+    note_look(b);
     if (const std::vector<char> parted = floaters(b.planes); !parted.empty())
       b.left_out.push_back(
           measure_left_out(b.source, parted, LeftOut::Reason::kFloater, b.left_out));

@@ -34,6 +34,13 @@ Json parameters_json(const Options& options) {
 /// A measure that may be unknown, which is negative inside the program and null in the report.
 Json known(double value) { return value < 0 ? Json() : Json(value); }
 
+Json texture_json(const LayerTexture& texture) {
+  const BakeFacts& f = texture.facts;
+  return {{"width", f.width},     {"height", f.height},     {"texel", f.texel},
+          {"charts", f.charts},   {"bytes", texture.bytes}, {"seen", f.seen},
+          {"nearest", f.nearest}, {"filled", f.filled},     {"unseen", f.unseen}};
+}
+
 Json layer_json(const Layer& layer) {
   Json json{{"layer", layer.layer}, {"segments", layer.segments}};
   if (!layer.failure.empty()) {
@@ -65,6 +72,7 @@ Json layer_json(const Layer& layer) {
                         {"failure", is_failure(layer.stand_in)},
                         {"message", describe(layer.stand_in)}};
   if (layer.bytes > 0) json["bytes"] = layer.bytes;
+  if (layer.texture) json["texture"] = texture_json(*layer.texture);
   return json;
 }
 
