@@ -251,13 +251,17 @@ std::vector<double> draco_values(const draco::Mesh& mesh, int id, int components
   const draco::PointAttribute* attribute =
       id < 0 ? nullptr : mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
   if (!attribute) return values;
+  // Whole numbers stand for 0 … 1, which accessors of colours and coordinates call normalized.
+  const double most = attribute->data_type() == draco::DT_UINT8    ? 255
+                      : attribute->data_type() == draco::DT_UINT16 ? 65535
+                                                                   : 1;
   for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
     std::array<double, 4> v{};
     const draco::AttributeValueIndex value = attribute->mapped_index(p);
     if (value.value() >= attribute->size() ||
         !attribute->ConvertValue<double>(value, static_cast<std::int8_t>(components), v.data()))
       return {};
-    values.insert(values.end(), v.begin(), v.begin() + components);
+    for (int c = 0; c < components; ++c) values.push_back(v[static_cast<std::size_t>(c)] / most);
   }
   return values;
 }

@@ -184,6 +184,31 @@ void color_corners(RawFile& raw) {
     colors.clear();
 }
 
+namespace {
+
+/// Lets go of materials and images that no face wears: a file may hold those of a hundred
+/// buildings.
+void drop_unused(Appearance& look) {
+  const Appearance all = look;
+  look.materials.clear(), look.images.clear();
+  std::vector<int> number(all.materials.size(), -1);
+  for (int& m : look.face_material) {
+    if (m < 0) continue;
+    int& fresh = number[static_cast<std::size_t>(m)];
+    if (fresh < 0) {
+      fresh = static_cast<int>(look.materials.size());
+      look.materials.push_back(all.materials[static_cast<std::size_t>(m)]);
+      int& image = look.materials.back().image;
+      if (image >= 0)
+        image = image_number(look.images, all.images[static_cast<std::size_t>(image)]);
+    }
+    m = fresh;
+  }
+  if (look.images.empty()) look.uvs.clear();
+}
+
+}  // namespace
+
 Appearance look_of(const RawFile& raw, const std::vector<Face>& corners,
                    const std::vector<int>& polygon, const std::vector<int>& chosen) {
   Appearance look;
@@ -199,6 +224,7 @@ Appearance look_of(const RawFile& raw, const std::vector<Face>& corners,
       look.colors.push_back(
           {raw.corner_colors[c[0]], raw.corner_colors[c[1]], raw.corner_colors[c[2]]});
   }
+  drop_unused(look);
   return look;
 }
 

@@ -125,7 +125,7 @@ TEST_CASE("grey, progressive and CMYK JPEGs, and grey, palette and 16 bit PNGs a
   const std::vector<std::uint16_t> deep(3 * 16 * 16, 65535 / 2);  // linear in libpng's API
   const Decoded deeper =
       decode_image(png(16, 16, PNG_FORMAT_LINEAR_RGB, deep.data(), nullptr, 0), kRoom);
-  CHECK(std::abs(deeper.raster.at(3, 4)[1] - 188) <= 1);
+  CHECK(std::abs(deeper.raster.at(3, 4)[1] - 188) <= 3);  // libpng looks gamma up in tables
   const std::vector<std::uint8_t> indices(16 * 16, 1), palette = {1, 2, 3, 70, 80, 90};
   const Decoded few =
       decode_image(png(16, 16, PNG_FORMAT_RGB_COLORMAP, indices.data(), palette.data(), 2), kRoom);
