@@ -228,7 +228,7 @@ class Painter {
     const Paint paint(box_.min.z(), seed_);
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       const Patch& patch = patches_[i];
-      const Rect& r = rects_[i];
+      const PackedRect& r = rects_[i];
       for (int y = 0; y < r.height; ++y)
         for (int x = 0; x < r.width; ++x) {
           const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
@@ -270,7 +270,7 @@ class Painter {
               "__" + std::to_string(part) + "\n";
       for (const int f : faces_of[part]) {
         const Patch& patch = patches_[patch_of[f]];
-        const Rect& r = rects_[patch_of[f]];
+        const PackedRect& r = rects_[patch_of[f]];
         for (const int v : mesh_.faces[f]) {
           const Vec2 at = (patch.flat(mesh_.vertices[v]) - patch.corner) / patch.texel +
                           Vec2(r.x + kGutter, r.y + kGutter);
@@ -294,7 +294,7 @@ class Painter {
   long seed_ = 0;
   std::vector<Vec3> normals_;
   std::vector<Patch> patches_;
-  std::vector<Rect> rects_;
+  std::vector<PackedRect> rects_;
   int width_ = 0, height_ = 0;
 };
 

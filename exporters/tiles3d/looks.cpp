@@ -67,7 +67,8 @@ TileLook colored(const PlannedTile& tile, const std::vector<ExportBuilding>& bui
 }
 
 /// A building's image in the tile's, and its coordinates there.
-LevelLook moved(const LevelLook& look, std::size_t triangles, const Rect& rect, Raster& whole) {
+LevelLook moved(const LevelLook& look, std::size_t triangles, const PackedRect& rect,
+                Raster& whole) {
   LevelLook out;
   out.width = whole.width, out.height = whole.height;
   const Vec2f size(static_cast<float>(whole.width), static_cast<float>(whole.height));
@@ -87,11 +88,12 @@ LevelLook moved(const LevelLook& look, std::size_t triangles, const Rect& rect, 
 
 TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
                 int largest) {
-  std::vector<Rect> rects;
+  std::vector<PackedRect> rects;
   const LevelLook* first = nullptr;
   for (const TilePart& part : tile.parts) {
     const LevelLook& own = part.level->look;
-    rects.push_back(own.has_texture() ? Rect{own.width, own.height} : Rect{kBlock, kBlock});
+    rects.push_back(own.has_texture() ? PackedRect{own.width, own.height}
+                                      : PackedRect{kBlock, kBlock});
     if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, buildings);
     if (own.has_texture() && !first) first = &own;
   }

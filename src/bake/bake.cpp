@@ -116,7 +116,7 @@ class Painter {
   std::vector<Task> list_tasks() const {
     std::vector<Task> tasks;
     for (std::size_t c = 0; c < charts_.size(); ++c) {
-      const Rect& r = atlas_.rects[c];
+      const PackedRect& r = atlas_.rects[c];
       for (int y = 0; y < r.height; y += kSquare)
         for (int x = 0; x < r.width; x += kSquare)
           tasks.push_back({static_cast<int>(c),
@@ -127,7 +127,7 @@ class Painter {
   }
 
   Vec2 to_texels(std::size_t chart, const Vec2& q) const {
-    const Rect& r = atlas_.rects[chart];
+    const PackedRect& r = atlas_.rects[chart];
     return q / atlas_.texel + Vec2(r.x + kGutter, r.y + kGutter);
   }
 
@@ -209,7 +209,7 @@ class Painter {
   Finding look(int number, const Vec2& corner, const std::vector<Corners>& triangles, int own,
                Lens& lens, Light& mean) const {
     const auto chart = static_cast<std::size_t>(number);
-    const Rect& rect = atlas_.rects[chart];
+    const PackedRect& rect = atlas_.rects[chart];
     const Vec2 begin(rect.x + kGutter, rect.y + kGutter);
     int found = 0, seen = 0;
     for (int j = 0; j < samples_; ++j)
@@ -239,14 +239,14 @@ class Painter {
                            ? Light((total.light / static_cast<double>(total.found())).cast<float>())
                            : Light(Light::Constant(0.5f));
     parallel_for(charts_.size(), [&](std::size_t c) {
-      const Rect& r = atlas_.rects[c];
+      const PackedRect& r = atlas_.rects[c];
       const Window window{r.x, r.y, r.width, r.height};
       if (!is_hardly_seen(of_chart[c])) return push_pull(image, is_known_, window);
       for (int y = r.y; y < r.y + r.height; ++y)
         for (int x = r.x; x < r.x + r.width; ++x) put(image.at(x, y), mean);
     });
     std::vector<std::uint8_t> is_taken(is_known_.size(), 0);
-    for (const Rect& r : atlas_.rects)
+    for (const PackedRect& r : atlas_.rects)
       for (int y = r.y; y < r.y + r.height; ++y)
         std::fill_n(&is_taken[static_cast<std::size_t>(y) * atlas_.width + r.x], r.width, 1);
     for (std::size_t i = 0; i < is_taken.size(); ++i)

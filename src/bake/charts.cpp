@@ -104,8 +104,8 @@ int round_up(double texels) {
   return (static_cast<int>(std::ceil(texels)) + kBlock - 1) / kBlock * kBlock;
 }
 
-std::vector<Rect> rects_of(const std::vector<Chart>& charts, double texel) {
-  std::vector<Rect> rects;
+std::vector<PackedRect> rects_of(const std::vector<Chart>& charts, double texel) {
+  std::vector<PackedRect> rects;
   for (const Chart& c : charts)
     rects.push_back({round_up(std::max(1.0, c.width / texel - 1e-6) + 2 * kGutter),
                      round_up(std::max(1.0, c.height / texel - 1e-6) + 2 * kGutter)});
@@ -133,7 +133,7 @@ Atlas pack_charts(const std::vector<Chart>& charts, double texel, int largest) {
   texel = std::max({texel, std::sqrt(area) / largest, longest / largest});
   largest = largest / kBlock * kBlock;
   for (int step = 0; step < kMostSteps; ++step, texel *= kStep) {
-    std::vector<Rect> rects = rects_of(charts, texel);
+    std::vector<PackedRect> rects = rects_of(charts, texel);
     const auto [width, height] = pack_rects(rects, largest);
     if (width > 0) return {width, height, texel, std::move(rects)};
   }

@@ -26,8 +26,8 @@ std::vector<Chart> find_charts(const PolygonMesh& mesh);
 /// Where charts lie; sides are multiples of 4.
 struct Atlas {
   int width = 0, height = 0;
-  double texel = 0;         ///< metres: as asked, or larger where the atlas would not fit
-  std::vector<Rect> rects;  ///< per chart, with its gutters
+  double texel = 0;               ///< metres: as asked, or larger where the atlas would not fit
+  std::vector<PackedRect> rects;  ///< per chart, with its gutters
 };
 
 /// The smallest atlas found whose sides are at most `largest`.

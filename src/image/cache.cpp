@@ -171,7 +171,7 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
   if (slot->entry.pyramid || (slot->is_known && slot->size[0] == 0)) return slot->entry;
   slot->is_known = true;
   try {
-    Decoded decoded = decode_image(read_place(place, impl_->budget), impl_->budget);
+    DecodedImage decoded = decode_image(read_place(place, impl_->budget), impl_->budget);
     slot->size = {decoded.raster.width, decoded.raster.height};
     slot->entry.problem = decoded.remark;
     slot->entry.pyramid = build(std::move(decoded.raster));
@@ -184,9 +184,7 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
 
 ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   const std::shared_ptr<Slot> slot = impl_->slot(place);
-  const auto known = [&] {
-    return Facts{slot->size[0], slot->size[1], slot->entry.problem};
-  };
+  const auto known = [&] { return Facts{slot->size[0], slot->size[1], slot->entry.problem}; };
   {
     const std::lock_guard lock(slot->mutex);
     if (slot->is_known) return known();

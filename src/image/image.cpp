@@ -39,7 +39,7 @@ const char* extension_of(ImageFormat format) {
   return "";
 }
 
-Decoded decode_image(std::string_view bytes, std::size_t most_bytes) {
+DecodedImage decode_image(std::string_view bytes, std::size_t most_bytes) {
   if (bytes.empty()) throw std::runtime_error("is empty");
   if (bytes.starts_with("\xFF\xD8")) return codecs::decode_jpeg(bytes, most_bytes);
   if (bytes.starts_with("\x89PNG")) return codecs::decode_png(bytes, most_bytes);

@@ -32,7 +32,7 @@ const char* mime_of(ImageFormat format);
 /// "jpg" …
 const char* extension_of(ImageFormat format);
 
-struct Decoded {
+struct DecodedImage {
   Raster raster;
   std::string remark;  ///< what is wrong with it though it could be read; empty: nothing
 };
@@ -40,7 +40,7 @@ struct Decoded {
 /// JPEG (also progressive, grey, CMYK), PNG (of any kind; transparency is left out) or WebP. Throws
 /// std::runtime_error with the cause, also where its pixels take more than `most_bytes`, which is
 /// known before any of them is decoded. Thread-safe.
-Decoded decode_image(std::string_view bytes, std::size_t most_bytes);
+DecodedImage decode_image(std::string_view bytes, std::size_t most_bytes);
 
 /// `quality` 1..100, of JPEG and WebP. The same pixels give the same bytes. Throws
 /// std::runtime_error. Thread-safe.

@@ -111,12 +111,12 @@ bool write_rows(Writer& w, const Raster& raster, int quality) {
 
 }  // namespace
 
-Decoded decode_jpeg(std::string_view bytes, std::size_t most_bytes) {
+DecodedImage decode_jpeg(std::string_view bytes, std::size_t most_bytes) {
   Reader r{};
   r.info.err = &r.failure.base;
   set_up(r.failure);
   std::vector<std::uint8_t> ink;
-  Decoded out;
+  DecodedImage out;
   std::string cause;
   bool is_read = start(r, bytes);
   try {

@@ -15,12 +15,12 @@ struct Node {
 };
 
 /// Places rectangles, given in `order`, one by one as low as it goes. False: beyond `most_height`.
-bool pack(std::vector<Rect>& rects, const std::vector<int>& order, int width, int most_height,
+bool pack(std::vector<PackedRect>& rects, const std::vector<int>& order, int width, int most_height,
           int& height) {
   std::vector<Node> skyline = {{0, 0}};
   height = 0;
   for (const int r : order) {
-    Rect& rect = rects[static_cast<std::size_t>(r)];
+    PackedRect& rect = rects[static_cast<std::size_t>(r)];
     int best_y = most_height + 1, best = -1;
     for (std::size_t i = 0; i < skyline.size() && skyline[i].x + rect.width <= width; ++i) {
       int y = 0;
@@ -51,7 +51,7 @@ bool pack(std::vector<Rect>& rects, const std::vector<int>& order, int width, in
 
 }  // namespace
 
-std::array<int, 2> pack_rects(std::vector<Rect>& rects, int largest) {
+std::array<int, 2> pack_rects(std::vector<PackedRect>& rects, int largest) {
   std::vector<int> order(rects.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -59,9 +59,9 @@ std::array<int, 2> pack_rects(std::vector<Rect>& rects, int largest) {
   });
   double area = 0;
   int widest = 4;
-  for (const Rect& r : rects)
+  for (const PackedRect& r : rects)
     area += static_cast<double>(r.width) * r.height, widest = std::max(widest, r.width);
-  std::vector<Rect> best;
+  std::vector<PackedRect> best;
   std::array<int, 2> size = {0, 0};
   for (const double share : {0.8, 0.9, 1.0, 1.05, 1.1, 1.2, 1.35, 1.5}) {
     const int wanted = static_cast<int>(std::ceil(share * std::sqrt(area) / 4)) * 4;

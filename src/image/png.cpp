@@ -16,19 +16,21 @@ struct Image : png_image {
   Image(const Image&) = delete;
   Image& operator=(const Image&) = delete;
 
-  [[noreturn]] void fail() const { throw std::runtime_error(std::string("is damaged: ") + message); }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(std::string("is damaged: ") + message);
+  }
 };
 
 }  // namespace
 
-Decoded decode_png(std::string_view bytes, std::size_t most_bytes) {
+DecodedImage decode_png(std::string_view bytes, std::size_t most_bytes) {
   Image image;
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) image.fail();
   check_size(image.width, image.height, most_bytes);
   image.format = PNG_FORMAT_RGBA;
   std::vector<std::uint8_t> rgba(PNG_IMAGE_SIZE(image));
   if (!png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) image.fail();
-  Decoded out{Raster(static_cast<int>(image.width), static_cast<int>(image.height)), {}};
+  DecodedImage out{Raster(static_cast<int>(image.width), static_cast<int>(image.height)), {}};
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
     std::memcpy(&out.raster.rgb[3 * i], &rgba[4 * i], 3);
   return out;

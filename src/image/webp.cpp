@@ -6,13 +6,13 @@
 
 namespace colod::codecs {
 
-Decoded decode_webp(std::string_view bytes, std::size_t most_bytes) {
+DecodedImage decode_webp(std::string_view bytes, std::size_t most_bytes) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   int width = 0, height = 0;
   if (!WebPGetInfo(data, bytes.size(), &width, &height))
     throw std::runtime_error("is damaged: no WebP header");
   check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), most_bytes);
-  Decoded out{Raster(width, height), {}};
+  DecodedImage out{Raster(width, height), {}};
   if (!WebPDecodeRGBInto(data, bytes.size(), out.raster.rgb.data(), out.raster.rgb.size(),
                          3 * width))
     throw std::runtime_error("is damaged or truncated");

@@ -100,7 +100,7 @@ TEST_CASE("images come back from each format, equal bytes for equal pixels") {
     const std::string bytes = encode_image(raster, format, 90);
     INFO(mime_of(format));
     CHECK(encode_image(raster, format, 90) == bytes);
-    const Decoded back = decode_image(bytes, kRoom);
+    const DecodedImage back = decode_image(bytes, kRoom);
     CHECK(back.remark.empty());
     CHECK((back.raster.width == 61 && back.raster.height == 45));
     CHECK(difference(back.raster, raster) <= most);
@@ -111,23 +111,23 @@ TEST_CASE("grey, progressive and CMYK JPEGs, and grey, palette and 16 bit PNGs a
   const std::vector<std::uint8_t> grey(32 * 32, 120);
   CHECK(decode_image(jpeg(32, 32, 1, JCS_GRAYSCALE, false, grey), kRoom).raster.at(5, 5)[2] == 120);
   const Raster raster = slopes(32, 32);
-  const Decoded progressive = decode_image(jpeg(32, 32, 3, JCS_RGB, true, raster.rgb), kRoom);
+  const DecodedImage progressive = decode_image(jpeg(32, 32, 3, JCS_RGB, true, raster.rgb), kRoom);
   CHECK(progressive.remark.empty());
   CHECK(difference(progressive.raster, raster) <= 12);
   std::vector<std::uint8_t> ink;  // inverted, as Adobe's: 200 of red let through, all of black
   for (int i = 0; i < 32 * 32; ++i) ink.insert(ink.end(), {200, 100, 50, 255});
-  const Decoded cmyk = decode_image(jpeg(32, 32, 4, JCS_CMYK, false, ink), kRoom);
+  const DecodedImage cmyk = decode_image(jpeg(32, 32, 4, JCS_CMYK, false, ink), kRoom);
   CHECK_THAT(cmyk.remark, Contains("CMYK"));
   CHECK(std::abs(cmyk.raster.at(9, 9)[0] - 200) <= 2);
   CHECK(std::abs(cmyk.raster.at(9, 9)[2] - 50) <= 2);
   CHECK(decode_image(png(32, 32, PNG_FORMAT_GRAY, grey.data(), nullptr, 0), kRoom)
             .raster.at(3, 4)[1] == 120);
   const std::vector<std::uint16_t> deep(3 * 16 * 16, 65535 / 2);  // linear in libpng's API
-  const Decoded deeper =
+  const DecodedImage deeper =
       decode_image(png(16, 16, PNG_FORMAT_LINEAR_RGB, deep.data(), nullptr, 0), kRoom);
   CHECK(std::abs(deeper.raster.at(3, 4)[1] - 188) <= 3);  // libpng looks gamma up in tables
   const std::vector<std::uint8_t> indices(16 * 16, 1), palette = {1, 2, 3, 70, 80, 90};
-  const Decoded few =
+  const DecodedImage few =
       decode_image(png(16, 16, PNG_FORMAT_RGB_COLORMAP, indices.data(), palette.data(), 2), kRoom);
   CHECK(few.raster.at(7, 7)[2] == 90);
 }
@@ -135,7 +135,7 @@ TEST_CASE("grey, progressive and CMYK JPEGs, and grey, palette and 16 bit PNGs a
 TEST_CASE("what is damaged, huge or foreign is told of") {
   const Raster raster = slopes(200, 200);
   const std::string jpg = encode_image(raster, ImageFormat::kJpeg, 90);
-  const Decoded half = decode_image(jpg.substr(0, jpg.size() / 2), kRoom);
+  const DecodedImage half = decode_image(jpg.substr(0, jpg.size() / 2), kRoom);
   CHECK_THAT(half.remark, Contains("damaged"));
   CHECK(difference(half.raster, half.raster) == 0);
   for (const ImageFormat format : {ImageFormat::kPng, ImageFormat::kWebp}) {
@@ -184,7 +184,7 @@ TEST_CASE("half of the light is not half of the number") {
 }
 
 TEST_CASE("rectangles are packed without overlap") {
-  std::vector<Rect> rects;
+  std::vector<PackedRect> rects;
   double area = 0;
   for (int i = 0; i < 300; ++i) {
     rects.push_back({4 * (1 + i * 7 % 23), 4 * (1 + i * 5 % 11)});
@@ -193,7 +193,7 @@ TEST_CASE("rectangles are packed without overlap") {
   const auto [width, height] = pack_rects(rects, 4096);
   std::vector<char> taken(static_cast<std::size_t>(width) * height, 0);
   bool overlaps = false;
-  for (const Rect& r : rects) {
+  for (const PackedRect& r : rects) {
     REQUIRE((r.x >= 0 && r.y >= 0 && r.x + r.width <= width && r.y + r.height <= height));
     CHECK((r.x % 4 == 0 && r.y % 4 == 0));
     for (int y = r.y; y < r.y + r.height; ++y)
