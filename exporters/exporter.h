@@ -2,11 +2,13 @@
 // writes them.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "core/geometry.h"
+#include "image/image.h"
 
 namespace colod {
 
@@ -20,6 +22,20 @@ struct Encoded {
 /// EXT_meshopt_compression.
 enum class Compression { kNone, kDraco, kMeshopt };
 
+/// How a level looks; empty where the source has no appearance, or none is asked for.
+struct LevelLook {
+  std::vector<std::array<Vec2f, 3>> uvs;  ///< per triangle, 0,0 is the image's upper left corner;
+                                          ///< empty: no texture
+  std::string image;                      ///< encoded
+  int width = 0, height = 0;              ///< texels, multiples of 4
+  ImageFormat format = ImageFormat::kJpeg;
+  int quality = 85;               ///< of images that are made of this one
+  Raster raster;                  ///< its pixels; empty where the encoded image alone is kept
+  std::vector<Rgb> facet_colors;  ///< per facet, for where no texture is; empty: none
+
+  bool has_texture() const { return !uvs.empty(); }
+};
+
 /// A mesh of one building as exporters see it: one layer, or several that are alike. Coordinates:
 /// building-local metres, z up, axes parallel to the world's (the pipeline has undone the frame's
 /// yaw); world = local + ExportBuilding::origin.
@@ -29,6 +45,7 @@ struct ExportLevel {
   double gsd = 0;        ///< metres a pixel: from where on it may stand for the finest level; falls
                          ///< strictly from level to level, 0 for the finest
   double deviation = 0;  ///< metres, two-sided, from the finest level
+  LevelLook look = {};
 };
 
 struct ExportBuilding {

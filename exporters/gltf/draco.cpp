@@ -80,7 +80,8 @@ std::vector<std::array<T, 1>> as_scalars(const std::vector<std::uint32_t>& ids) 
 }
 
 struct Attributes {
-  int position = 0, normal = 0, feature = 0;
+  int position = 0, normal = 0, feature = 0, uv = -1, color = -1;
+  int uv_bits = 0;
   bool is_one_feature = false;
 };
 
@@ -108,6 +109,19 @@ std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGr
                                                       as_scalars<std::uint16_t>(mesh.feature_ids))
                     : add_attribute<float, 1>(*out, Kind::GENERIC, draco::DT_FLOAT32,
                                               as_scalars<float>(mesh.feature_ids));
+  if (!mesh.uvs.empty()) {
+    std::vector<std::array<float, 2>> uvs;
+    for (const Vec2f& uv : mesh.uvs) uvs.push_back({uv.x(), uv.y()});
+    ids.uv = add_attribute<float, 2>(*out, Kind::TEX_COORD, draco::DT_FLOAT32, uvs);
+    // Steps of a quarter of a texel.
+    ids.uv_bits = std::clamp(
+        static_cast<int>(std::ceil(std::log2(std::max(mesh.texture_side, 1)))) + 2, 8, 20);
+  }
+  if (!mesh.colors.empty()) {
+    std::vector<std::array<std::uint16_t, 4>> colors;
+    for (const Rgb& rgb : mesh.colors) colors.push_back(linear_color(rgb));
+    ids.color = add_attribute<std::uint16_t, 4>(*out, Kind::COLOR, draco::DT_UINT16, colors);
+  }
   out->DeduplicateAttributeValues();  // equal positions of neighbouring facets share connectivity
   out->DeduplicatePointIds();
   return out;
@@ -136,6 +150,7 @@ std::string encode_at(const draco::Mesh& mesh, const Attributes& ids, const Quan
   encoder.SetSpeedOptions(packing.speed, kDecodingSpeed);
   encoder.options().SetAttributeOptions(ids.position, position_options(grid));
   encoder.SetAttributeQuantization(ids.normal, kNormalBits);
+  if (ids.uv >= 0) encoder.SetAttributeQuantization(ids.uv, ids.uv_bits);
   if (packing.position != draco::PREDICTION_UNDEFINED)
     check(encoder.SetAttributePredictionScheme(ids.position, packing.position));
   if (packing.normal != draco::PREDICTION_UNDEFINED)
@@ -198,6 +213,10 @@ void read_back(DracoResult& result) {
   result.position_id = static_cast<int>(position->unique_id());
   result.normal_id = static_cast<int>(normal->unique_id());
   result.feature_id = static_cast<int>(feature->unique_id());
+  if (const auto* uv = mesh.GetNamedAttribute(draco::GeometryAttribute::TEX_COORD))
+    result.uv_id = static_cast<int>(uv->unique_id());
+  if (const auto* color = mesh.GetNamedAttribute(draco::GeometryAttribute::COLOR))
+    result.color_id = static_cast<int>(color->unique_id());
   Box box;
   for (std::uint32_t i = 0; i < result.vertices; ++i) {
     std::array<float, 3> p;
@@ -208,6 +227,13 @@ void read_back(DracoResult& result) {
 }
 
 }  // namespace
+
+std::array<std::uint16_t, 4> linear_color(const Rgb& rgb) {
+  std::array<std::uint16_t, 4> out = {0, 0, 0, 65535};
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = static_cast<std::uint16_t>(std::lround(65535 * to_linear(rgb[k])));
+  return out;
+}
 
 QuantizationGrid fit_grid(const Box& box, double bound) {
   double step = std::exp2(std::floor(std::log2(2 * bound / std::sqrt(3.0))));

@@ -1,6 +1,7 @@
 // KHR_draco_mesh_compression's payload; the only door to the Draco encoder.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -17,6 +18,9 @@ struct FlatMesh {
   std::vector<Vec3> positions;             ///< metres, in the axes of the container
   std::vector<Vec3> normals;               ///< unit, per position
   std::vector<std::uint32_t> feature_ids;  ///< per position; empty only where neither packed
+  std::vector<Vec2f> uvs;                  ///< per position, or empty
+  std::vector<Rgb> colors;                 ///< per position, or empty
+  int texture_side = 0;                    ///< texels of the longer side that uvs are of
   std::vector<Face> triangles;
 };
 
@@ -46,8 +50,12 @@ struct DracoResult {
   std::string bytes;
   std::uint32_t vertices = 0, faces = 0;               ///< as a decoder will see them
   Vec3 min, max;                                       ///< of the decoded positions
-  int position_id = 0, normal_id = 0, feature_id = 0;  ///< Draco unique ids
+  int position_id = 0, normal_id = 0, feature_id = 0;  ///< Draco unique ids …
+  int uv_id = -1, color_id = -1;                       ///< … −1: there are none
 };
+
+/// COLOR_0 as glTF wants it: linear light, opaque; 16 bits, since 8 part dark colours too coarsely.
+std::array<std::uint16_t, 4> linear_color(const Rgb& rgb);
 
 /// Triangles with two corners on one point must have been left out. Throws Error{kOutput} when the
 /// encoder refuses or loses a face.

@@ -70,6 +70,28 @@ Json level_json(const ExportBuilding& building, std::size_t lod, const ExportLev
   return json;
 }
 
+int power_of_two(int n) { return n <= 4 ? 4 : 2 * power_of_two((n + 1) / 2); }
+
+/// The level's look with an image whose sides are powers of two, as engines want them for their mip
+/// chains and texture compression: its pixels in the upper left corner, its last ones beyond.
+LevelLook squared(const LevelLook& look) {
+  if (!look.has_texture()) return look;
+  const int width = power_of_two(look.width), height = power_of_two(look.height);
+  LevelLook out = look;
+  out.width = width, out.height = height;
+  Raster raster(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      std::copy_n(look.raster.at(std::min(x, look.width - 1), std::min(y, look.height - 1)), 3,
+                  raster.at(x, y));
+  const Vec2f scale(static_cast<float>(look.width) / static_cast<float>(width),
+                    static_cast<float>(look.height) / static_cast<float>(height));
+  for (auto& corners : out.uvs)
+    for (Vec2f& uv : corners) uv = uv.cwiseProduct(scale);
+  out.image = encode_image(raster, look.format, look.quality);
+  return out;
+}
+
 }  // namespace
 
 std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
@@ -79,14 +101,16 @@ std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
   std::vector<Encoded> files;
   for (std::size_t lod = 0; lod < levels.size(); ++lod) {
     const QuantizationGrid grid = level_grid(*levels[lod], pivot, lod == 0, options);
-    FlatMesh flat = flatten(levels[lod]->mesh, -pivot, grid);
+    const LevelLook look = squared(levels[lod]->look);
+    FlatMesh flat = flatten(levels[lod]->mesh, -pivot, grid, 0, look);
     flat.feature_ids.clear();  // one building a file
     GltfDocument document = start_gltf();
     document.json["asset"]["extras"] = {{"pivot", {world.x(), world.y(), world.z()}},
                                         {"pivotAxes", "z up, metres"}};
-    document.json["materials"][0]["name"] = building.name;
     const std::string name = level_name(building, lod);
-    const Json primitive = add_primitive(document, flat, grid, Compression::kNone);
+    Json primitive = add_primitive(document, flat, grid, Compression::kNone);
+    set_look(document, look, building.name, primitive);
+    document.json["materials"][0]["name"] = building.name;
     document.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
     document.json["nodes"].push_back({{"name", name},
                                       {"mesh", 0},

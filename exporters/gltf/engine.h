@@ -12,7 +12,8 @@ struct EngineOptions {
 };
 
 /// engine/<name>_LOD<n>.glb, n = 0 the finest: uncompressed, y up, metres, pivot at the middle of
-/// the footprint on the ground, one node, mesh, material and draw call. Throws Error{kOutput} for a
+/// the footprint on the ground, one node, mesh, material and draw call; its image, which needs the
+/// pixels of the level's look, has sides that are powers of two. Throws Error{kOutput} for a
 /// building without layers or triangles.
 std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
                                           const EngineOptions& options = {});

@@ -85,8 +85,9 @@ BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions
   std::vector<std::size_t> bytes;
   for (std::size_t lod = levels.size(); lod-- > 0;) {  // coarsest first in the binary chunk
     Level& level = levels[lod];
+    const LevelLook& look = level.level->look;
     const FlatMesh flat =
-        flatten(level.level->mesh, Vec3::Zero(), level.grid, static_cast<int>(lod));
+        flatten(level.level->mesh, Vec3::Zero(), level.grid, static_cast<int>(lod), look);
     level.faces = flat.triangles.size();
     Json mesh;
     mesh["name"] = shown_name(building) + "_LOD" + std::to_string(lod);
@@ -94,6 +95,7 @@ BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions
     Json primitive = add_primitive(document, flat, level.grid, options.compression);
     bytes.push_back(document.binary.size() - before);
     primitive["extensions"]["EXT_mesh_features"] = feature_ids(levels.size());
+    set_look(document, look, mesh["name"], primitive);
     mesh["primitives"] = Json::array({primitive});
     level.mesh = static_cast<int>(document.json["meshes"].size());
     document.json["meshes"].push_back(mesh);

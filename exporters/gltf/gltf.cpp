@@ -53,6 +53,17 @@ void set_bounds(GltfDocument& document, int accessor, const Box& box) {
   document.json["accessors"][accessor]["max"] = as_array(box.max);
 }
 
+/// An accessor for what linear_color makes.
+int add_colors(GltfDocument& document, std::size_t count, int view) {
+  const int accessor = add_accessor(document, kUnsignedShort, "VEC4", count, view);
+  document.json["accessors"][accessor]["normalized"] = true;
+  return accessor;
+}
+
+void put_color(std::string& bytes, const Rgb& rgb) {
+  for (const std::uint16_t v : linear_color(rgb)) put(bytes, v);
+}
+
 Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationGrid& grid,
                Box& box) {
   const DracoResult draco = encode_draco(mesh, grid);
@@ -63,6 +74,14 @@ Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationG
   attributes["POSITION"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
   set_bounds(document, attributes["POSITION"], box);
   attributes["NORMAL"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
+  if (draco.uv_id >= 0) {
+    extension["attributes"]["TEXCOORD_0"] = draco.uv_id;
+    attributes["TEXCOORD_0"] = add_accessor(document, kFloat, "VEC2", draco.vertices);
+  }
+  if (draco.color_id >= 0) {
+    extension["attributes"]["COLOR_0"] = draco.color_id;
+    attributes["COLOR_0"] = add_colors(document, draco.vertices, -1);
+  }
   const auto most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
   extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
   attributes["_FEATURE_ID_0"] =
@@ -74,6 +93,19 @@ Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationG
                    3 * std::size_t{draco.faces});
   primitive["extensions"]["KHR_draco_mesh_compression"] = extension;
   return primitive;
+}
+
+void add_plain_look(GltfDocument& document, const FlatMesh& mesh, Json& attributes) {
+  std::string uvs, colors;
+  for (const Vec2f& uv : mesh.uvs) put(uvs, uv.x()), put(uvs, uv.y());
+  for (const Rgb& rgb : mesh.colors) put_color(colors, rgb);
+  const std::size_t n = mesh.positions.size();
+  if (!uvs.empty())
+    attributes["TEXCOORD_0"] =
+        add_accessor(document, kFloat, "VEC2", n, add_buffer_view(document, uvs, kArrayBuffer));
+  if (!colors.empty())
+    attributes["COLOR_0"] =
+        add_colors(document, n, add_buffer_view(document, colors, kArrayBuffer));
 }
 
 Json add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
@@ -98,6 +130,7 @@ Json add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   set_bounds(document, attributes["POSITION"], box);
   attributes["NORMAL"] =
       add_accessor(document, kFloat, "VEC3", n, add_buffer_view(document, normals, kArrayBuffer));
+  add_plain_look(document, mesh, attributes);
   if (!ids.empty())
     attributes["_FEATURE_ID_0"] =
         add_accessor(document, kFloat, "SCALAR", n, add_buffer_view(document, ids, kArrayBuffer));
@@ -139,6 +172,25 @@ int add_packed(GltfDocument& document, const Stream& stream) {
                          "ATTRIBUTES");
 }
 
+/// Coordinates in steps of 1/65535, a sixteenth of a texel of the largest atlas.
+void add_packed_look(GltfDocument& document, const FlatMesh& mesh,
+                     const std::vector<std::uint32_t>& order, Json& attributes) {
+  Stream uvs{{}, 4}, colors{{}, 8};
+  for (const std::uint32_t v : order) {
+    if (!mesh.uvs.empty())
+      for (const float c : mesh.uvs[v])
+        put(uvs.bytes, static_cast<std::uint16_t>(std::lround(65535 * std::clamp(c, 0.f, 1.f))));
+    if (!mesh.colors.empty()) put_color(colors.bytes, mesh.colors[v]);
+  }
+  if (!mesh.uvs.empty()) {
+    attributes["TEXCOORD_0"] =
+        add_accessor(document, kUnsignedShort, "VEC2", order.size(), add_packed(document, uvs));
+    document.json["accessors"][attributes["TEXCOORD_0"].get<int>()]["normalized"] = true;
+  }
+  if (!mesh.colors.empty())
+    attributes["COLOR_0"] = add_colors(document, order.size(), add_packed(document, colors));
+}
+
 Json add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   std::vector<std::uint32_t> indices, order;
   for (const Face& f : mesh.triangles)
@@ -166,6 +218,7 @@ Json add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   document.json["accessors"][attributes["NORMAL"].get<int>()]["normalized"] = true;
   attributes["_FEATURE_ID_0"] =
       add_accessor(document, kFloat, "SCALAR", order.size(), add_packed(document, ids));
+  add_packed_look(document, mesh, order, attributes);
   primitive["attributes"] = attributes;
   primitive["indices"] = add_accessor(document, kUnsignedInt, "SCALAR", indices.size(), index_view);
   return primitive;
@@ -249,6 +302,57 @@ Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const Quantizat
   return primitive;
 }
 
+namespace {
+
+/// A material of baked light.
+Json unlit(const std::string& name) {
+  Json material = {{"name", name},
+                   {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}};
+  material["extensions"]["KHR_materials_unlit"] = Json::object();
+  return material;
+}
+
+/// Its number.
+int add_material(GltfDocument& document, Json material) {
+  name_extension(document.json["extensionsUsed"], "KHR_materials_unlit");
+  Json& all = document.json["materials"];
+  if (all.size() == 1 && all[0]["name"] == "plain") all = Json::array();
+  if (!all.empty() && all.back() == material) return static_cast<int>(all.size()) - 1;
+  all.push_back(std::move(material));
+  return static_cast<int>(all.size()) - 1;
+}
+
+int add_texture(GltfDocument& document, const std::string& name, const LevelLook& look) {
+  constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;
+  Json& json = document.json;
+  json["images"].push_back(
+      {{"bufferView", add_buffer_view(document, look.image)}, {"mimeType", mime_of(look.format)}});
+  const std::size_t number = json["images"].size() - 1;
+  json["samplers"] = Json::array(
+      {{{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
+  Json texture = {{"sampler", 0}};
+  if (look.format == ImageFormat::kWebp) {
+    texture["extensions"]["EXT_texture_webp"]["source"] = number;
+    require(document, "EXT_texture_webp");
+  } else {
+    texture["source"] = number;
+  }
+  json["textures"].push_back(texture);
+  Json material = unlit(name);
+  material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = number;
+  return add_material(document, std::move(material));
+}
+
+}  // namespace
+
+void set_look(GltfDocument& document, const LevelLook& look, const std::string& name,
+              Json& primitive) {
+  if (look.has_texture())
+    primitive["material"] = add_texture(document, name, look);
+  else if (!look.facet_colors.empty())
+    primitive["material"] = add_material(document, unlit("colors"));
+}
+
 std::string finish_glb(GltfDocument document) {
   pad(document.binary, 4, '\0');
   document.json["buffers"] = Json::array({{{"byteLength", document.binary.size()}}});
@@ -270,8 +374,11 @@ std::string finish_glb(GltfDocument document) {
 }
 
 FlatMesh flatten(const PolygonMesh& mesh, const Vec3& offset, const QuantizationGrid& grid,
-                 int feature) {
+                 int feature, const LevelLook& look) {
   FlatMesh out;
+  const bool has_texture = look.has_texture();
+  const bool has_colors = !has_texture && !look.facet_colors.empty();
+  if (has_texture) out.texture_side = std::max(look.width, look.height);
   const std::vector<Vec3> normals = facet_normals(mesh);
   std::vector<Vec3> rounded;
   for (const Vec3& p : mesh.vertices) rounded.push_back(grid.round(to_gltf(p + offset)));
@@ -291,6 +398,8 @@ FlatMesh flatten(const PolygonMesh& mesh, const Vec3& offset, const Quantization
       out.positions.push_back(rounded[f[c]]);
       out.normals.push_back(normals[facet]);
       out.feature_ids.push_back(static_cast<std::uint32_t>(feature));
+      if (has_texture) out.uvs.push_back(look.uvs[t][static_cast<std::size_t>(c)]);
+      if (has_colors) out.colors.push_back(look.facet_colors[static_cast<std::size_t>(facet)]);
     }
     out.triangles.push_back(flat);
   }
@@ -302,6 +411,9 @@ void append(FlatMesh& a, const FlatMesh& b) {
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
   a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
   a.feature_ids.insert(a.feature_ids.end(), b.feature_ids.begin(), b.feature_ids.end());
+  a.uvs.insert(a.uvs.end(), b.uvs.begin(), b.uvs.end());
+  a.colors.insert(a.colors.end(), b.colors.begin(), b.colors.end());
+  a.texture_side = std::max(a.texture_side, b.texture_side);
   for (const Face& f : b.triangles) a.triangles.push_back({f[0] + base, f[1] + base, f[2] + base});
 }
 

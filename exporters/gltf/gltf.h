@@ -35,6 +35,12 @@ nlohmann::ordered_json add_primitive(GltfDocument& document, const FlatMesh& mes
                                      const QuantizationGrid& grid, Compression compression,
                                      Box* box = nullptr);
 
+/// Gives a primitive the material of a look: an image of its own, or vertex colours, both unlit;
+/// without either it keeps the plain one. Appends what it needs; the document has no plain material
+/// any more then.
+void set_look(GltfDocument& document, const LevelLook& look, const std::string& name,
+              nlohmann::ordered_json& primitive);
+
 /// The .glb file: header, JSON chunk, BIN chunk.
 std::string finish_glb(GltfDocument document);
 
@@ -44,9 +50,10 @@ inline Vec3 from_gltf(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
 
 /// The layer flat-shaded in glTF axes, moved by `offset` (z-up metres) and rounded to the grid;
 /// triangles that rounding made a line between two points or a point are left out, which opens no
-/// hole. Every vertex gets the id `feature`.
+/// hole. Every vertex gets the id `feature`, and what `look` says of it: coordinates of its
+/// texture, or its facet's colour.
 FlatMesh flatten(const PolygonMesh& mesh, const Vec3& offset, const QuantizationGrid& grid,
-                 int feature = 0);
+                 int feature = 0, const LevelLook& look = {});
 
 /// Appends b to a.
 void append(FlatMesh& a, const FlatMesh& b);

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "exporters/gltf/metadata.h"
 #include "frame.h"
+#include "looks.h"
 #include "tree.h"
 
 namespace colod {
@@ -134,10 +135,11 @@ void encode_content(const Scene& scene, Content& content) {
   const TileFrame& frame = scene.frames[content.frame];
   const std::vector<PolygonMesh> parts = placed_parts(tile, frame);
   const QuantizationGrid grid = content_grid(parts, rounding_bound(tile, scene.options));
+  const TileLook look = look_of(tile, scene.buildings, scene.options.largest_texture);
   FlatMesh merged;
   std::vector<Feature> features;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const FlatMesh flat = flatten(parts[i], Vec3::Zero(), grid, static_cast<int>(i));
+    const FlatMesh flat = flatten(parts[i], Vec3::Zero(), grid, static_cast<int>(i), look.parts[i]);
     features.push_back(feature_of(scene, tile.parts[i], grid.error(), flat.triangles.size()));
     content.gsd = std::max(content.gsd, features.back().gsd);
     append(merged, flat);
@@ -147,6 +149,7 @@ void encode_content(const Scene& scene, Content& content) {
     document.json["asset"]["extras"]["origin"] = vec_json(frame.origin());
   Box seen;
   Json primitive = add_primitive(document, merged, grid, scene.options.compression, &seen);
+  set_look(document, look.whole, tile.name, primitive);
   primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());
   Json node = {{"name", tile.name}, {"mesh", 0}};
   if (features.size() == 1)

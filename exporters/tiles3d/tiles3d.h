@@ -12,6 +12,7 @@ struct TilesOptions {
   double target_sse = 16;      ///< pixels that clients refine at: a tile's geometricError is
                                ///< target_sse times the gsd of what it shows
   SwitchFacts switching = {};  ///< pixel_error: what a stand-in's deviation may be
+  int largest_texture = 4096;  ///< texels a side of a tile's atlas
   Placement placement = {};    ///< empty: the frame is local and no place on Earth is made up
 };
 

@@ -26,7 +26,7 @@ int build(const BuildArguments& a) {
                        .tell = [&](const Message& m) { log.message(m); },
                        .ready = [&] { make_folder(a.out); }};
   Product product = run_job(a.inputs, a.job, hooks);
-  return write_all(product.scene, a.job.options, start, std::move(product.pictures),
+  return write_all(product.scene, a.job.options, start, std::move(product.pictures), *product.depot,
                    {a.out, a.job.output}, log);
 }
 

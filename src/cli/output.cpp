@@ -14,9 +14,9 @@ void log_problems(const Scene& scene, const Log& log) {
 }
 
 int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::time_point start,
-              Pictures pictures, const OutputArguments& a, const Log& log) {
+              Pictures pictures, Depot& depot, const OutputArguments& a, const Log& log) {
   encode_scene(
-      scene, a.options, [&](const Encoded& file) { write_file(a.out, file); },
+      scene, a.options, depot, [&](const Encoded& file) { write_file(a.out, file); },
       [&](const Message& m) { log.message(m); });
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   for (const Encoded& file : encode_report(scene, options, {seconds.count(), peak_memory_bytes()},

@@ -17,11 +17,11 @@ struct OutputArguments {
 
 void add_output_arguments(CLI::App& app, OutputArguments& a);
 
-/// Writes the files of all buildings and of the scene, report.html and report.json; says what
-/// failed and what was done; returns the exit code. `start`: when the job began. Throws
-/// Error{kOutput} for what cannot be written.
+/// `depot` has the sources. Writes the files of all buildings and of the scene, report.html and
+/// report.json; says what failed and what was done; returns the exit code. `start`: when the job
+/// began. Throws Error{kOutput} for what cannot be written.
 int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::time_point start,
-              Pictures pictures, const OutputArguments& a, const Log& log);
+              Pictures pictures, Depot& depot, const OutputArguments& a, const Log& log);
 
 /// All problems of a scene.
 void log_problems(const Scene& scene, const Log& log);

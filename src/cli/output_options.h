@@ -41,6 +41,43 @@ inline void add_switch_options(CLI::App& app, SwitchOptions& o) {
       ->check(number_between(0.0, 1.0));
 }
 
+inline void add_texture_options(CLI::App& app, TextureOptions& o) {
+  app.add_option_function<std::string>(
+         "--texture",
+         [&o](const std::string& v) {
+           o.mode = v == "none"     ? Texture::kNone
+                    : v == "colors" ? Texture::kColors
+                                    : Texture::kAuto;
+         },
+         "auto (default): layers wear what sources with textures or vertex colours look like; "
+         "none: "
+         "one plain colour; colors: one colour a facet, a few bytes, also of plain materials")
+      ->check(CLI::IsMember({"auto", "none", "colors"}));
+  app.add_option("--texel-size", o.texel,
+                 "least side of a texel [m]; default 0: on the finest layer as fine as the source, "
+                 "on others as a pixel where the layer may stand")
+      ->check(number_between(0.0, 100.0));
+  app.add_option("--texture-size", o.largest,
+                 "largest side of an atlas [texels], default 4096; what does not fit gets larger "
+                 "texels")
+      ->check(number_between(64, 16384));
+  app.add_option_function<std::string>(
+         "--texture-format",
+         [&o](const std::string& v) {
+           o.format = v == "webp"  ? ImageFormat::kWebp
+                      : v == "png" ? ImageFormat::kPng
+                                   : ImageFormat::kJpeg;
+         },
+         "of images: jpeg (default), webp (EXT_texture_webp, without fallback) or png")
+      ->check(CLI::IsMember({"jpeg", "webp", "png"}));
+  app.add_option("--texture-quality", o.quality, "of JPEG and WebP, default 85")
+      ->check(number_between(1, 100));
+  app.add_option("--texture-memory", o.memory,
+                 "MiB that decoded images may take together, default 512; an image that takes more "
+                 "is left out")
+      ->check(number_between(1.0, 1e6));
+}
+
 inline void add_output_options(CLI::App& app, OutputOptions& a) {
   app.add_option("--format", a.formats,
                  "glb, 3dtiles, 3tz, engine, obj, ply; several with commas (default glb,3dtiles)")
@@ -71,6 +108,7 @@ inline void add_output_options(CLI::App& app, OutputOptions& a) {
                  "the screen-space error that clients refine at [pixels], default 16")
       ->check(number_between(0.01, 1e4));
   add_switch_options(app, a.switching);
+  add_texture_options(app, a.texture);
   app.add_flag("--no-report-html", a.has_no_page,
                "report.json only, no report.html and no pictures for it");
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -176,13 +177,30 @@ int mesh(const StageArguments& a) {
   return exit_code(problems);
 }
 
-/// What the pictures need besides the layers; one building at a time, so that memory stays flat.
-void bring_source(Building& b, Store& store, std::mutex& mutex) {
-  const std::lock_guard lock(mutex);
-  Building kept = store.building(b.source.name);
-  b.source.mesh = std::move(kept.source.mesh);
-  b.source.cloud = std::move(kept.source.cloud);
-}
+/// The sources of scenes that were read before, one at a time, so that memory stays flat.
+class Sources : public Depot {
+ public:
+  Sources(std::vector<Store>& stores, const Scene& scene, const std::vector<std::size_t>& file_of)
+      : stores_(stores) {
+    for (std::size_t i = 0; i < file_of.size(); ++i)
+      file_of_[scene.buildings[i].source.name] = file_of[i];
+  }
+
+  void get(Building& b) override {
+    const std::lock_guard lock(mutex_);
+    Building kept = stores_[file_of_.at(b.source.name)].building(b.source.name);
+    b.source.mesh = std::move(kept.source.mesh);
+    b.source.cloud = std::move(kept.source.cloud);
+    b.source.look = std::move(kept.source.look);
+  }
+  void drop(Building& b) override { drop_geometry(b); }
+  void put(Building& b) override { drop(b); }
+
+ private:
+  std::vector<Store>& stores_;
+  std::map<std::string, std::size_t> file_of_;
+  std::mutex mutex_;
+};
 
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
@@ -197,17 +215,17 @@ int export_files(const StageArguments& a) {
   make_folder(a.output.out);
   const Options options = stores.front().options();
   Gallery gallery(scene.buildings.size(), options.layers);
-  std::mutex mutex;
+  Sources sources(stores, scene, file_of);
   if (!a.output.options.has_no_page)
     parallel_for(scene.buildings.size(), [&](std::size_t i) {
       Building& b = scene.buildings[i];
-      bring_source(b, stores[file_of[i]], mutex);
+      sources.get(b);
       gallery.draw(b);
-      drop_geometry(b);
+      sources.drop(b);
     });
   decide_switches(scene, options.layers, switch_options(a.output.options),
                   read_sights(a.prior, options.layers, [&](const Message& m) { log.message(m); }));
-  return write_all(scene, options, start, gallery.take(scene), a.output, log);
+  return write_all(scene, options, start, gallery.take(scene), sources, a.output, log);
 }
 
 std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {

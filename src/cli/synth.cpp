@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "numbers.h"
+#include "synth/paint.h"
 
 namespace colod::cli {
 namespace {
@@ -16,9 +17,24 @@ struct SynthArguments {
   SynthOptions options;
   std::string out, scan;
   int threads = 0;
+  bool is_textured = false;
+  double texel = 0.03;
 };
 
-void write_models(const std::vector<SynthBuilding>& buildings, const std::string& out) {
+void write_painted(const SynthArguments& a, const std::vector<SynthBuilding>& buildings,
+                   const std::string& out) {
+  parallel_for(buildings.size(), [&](std::size_t i) {
+    const std::string& name = buildings[i].source.name;
+    const PaintedModel model = paint(buildings[i], a.texel);
+    write_file(out, {name + ".obj", model.obj});
+    write_file(out, {name + ".mtl", model.mtl});
+    write_file(out, {name + ".jpg", model.image});
+  });
+}
+
+void write_models(const SynthArguments& a, const std::vector<SynthBuilding>& buildings,
+                  const std::string& out) {
+  if (a.is_textured) return write_painted(a, buildings, out);
   for (const SynthBuilding& b : buildings) write_file(out, {b.source.name + ".obj", synth_obj(b)});
 }
 
@@ -26,15 +42,15 @@ int synth(const SynthArguments& a) {
   limit_threads(a.threads);
   SynthOptions options = a.options;
   const std::vector<SynthBuilding> buildings = make_neighbourhood(options);
-  if (options.is_scan || options.is_drone)
+  if ((options.is_scan || options.is_drone) && !a.is_textured)
     for (const SynthBuilding& b : buildings)
       write_file(a.out, {b.source.name + ".ply", synth_ply(b)});
   else
-    write_models(buildings, a.out);
+    write_models(a, buildings, a.out);
   write_file(a.out, {"truth.json", truth_json(buildings, options)});
   if (options.is_drone) {
     options.is_drone = false;
-    write_models(make_neighbourhood(options), a.out + "/clean");
+    write_models(a, make_neighbourhood(options), a.out + "/clean");
   }
   std::fprintf(stderr, "colod: %zu buildings and truth.json written to %s\n", buildings.size(),
                a.out.c_str());
@@ -76,6 +92,11 @@ Run add_synth(CLI::App& app) {
                                             {"hall", SynthPlans::kHalls},
                                             {"office", SynthPlans::kOffices}}));
   app.add_flag("--slopes", a->options.has_slopes, "with --variety: houses on sloping ground");
+  app.add_flag(
+      "--texture", a->is_textured,
+      "brick, plaster, tiles, glass and a word on every wall, in OBJ, MTL and JPEG; scans too");
+  app.add_option("--texel-size", a->texel, "of the textures [m], default 0.03")
+      ->check(number_between(0.002, 1.0));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
   return [a, scan] {

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "appearance.h"
+
 namespace colod {
 
 using Vec2 = Eigen::Vector2d;
@@ -70,6 +72,7 @@ struct Source {
   PointCloud cloud;
   std::vector<int> face_object;  ///< per face of `mesh`: the file's object number (OBJ group, PLY
                                  ///< property `object`); empty: none
+  Appearance look;               ///< of the faces of `mesh`; empty: none
   std::vector<std::string> warnings;  ///< what the reader mended or doubts, one line each
   std::vector<LeftOut> left_out;      ///< what is no longer in it
   double read_seconds = 0;            ///< wall clock that reading its file took
@@ -123,6 +126,9 @@ inline Vec3 face_cross(const Mesh& m, const Face& f) {
   return (m.vertices[f[1]] - m.vertices[f[0]]).cross(m.vertices[f[2]] - m.vertices[f[0]]);
 }
 inline double face_area(const Mesh& m, const Face& f) { return 0.5 * face_cross(m, f).norm(); }
+/// Weights of the corners that give the point of a face's plane nearest to p; thirds where the face
+/// has no area.
+Vec3 barycentric(const Mesh& m, const Face& f, const Vec3& p);
 double surface_area(const Mesh& m);
 /// Signed volume enclosed by a closed mesh (positive when faces point outward); meaningless for an
 /// open one.

@@ -39,20 +39,21 @@ Product work(const Job& job, const JobHooks& hooks, const Beside& beside, std::s
              const std::function<Scene(const Hooks&, const Prior*)>& build) {
   check_cost(job.options, buildings);
   if (hooks.ready) hooks.ready();
-  TemporaryStore store;
+  auto store = std::make_unique<TemporaryStore>();
   Judge judge(beside.truth);
   Gallery gallery(buildings, job.options.layers);
-  Hooks inner{.depot = &store,
+  Hooks inner{.depot = store.get(),
               .observers = {},
               .progress = hooks.progress,
               .is_cancelled = hooks.is_cancelled};
   if (!beside.truth.empty()) inner.observers.push_back(judge.observer());
   if (!job.output.has_no_page) inner.observers.push_back(gallery.observer());
-  Product product{build(inner, beside.prior ? &*beside.prior : nullptr), {}};
+  Product product{build(inner, beside.prior ? &*beside.prior : nullptr), {}, nullptr};
   if (!beside.truth.empty())
     product.scene.consistency = tally_parts(judge.parts(), job.options.layers);
   decide_switches(product.scene, job.options.layers, switch_options(job.output), beside.sights);
   product.pictures = gallery.take(product.scene);
+  product.depot = std::move(store);
   return product;
 }
 

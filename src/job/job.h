@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,8 +32,9 @@ struct JobHooks {
 };
 
 struct Product {
-  Scene scene;        ///< its switches are decided
-  Pictures pictures;  ///< for report.html; none with has_no_page
+  Scene scene;                   ///< its switches are decided
+  Pictures pictures;             ///< for report.html; none with has_no_page
+  std::unique_ptr<Depot> depot;  ///< where the sources lie, which textures are made of
 };
 
 /// The buildings of files and folders. Throws Error{kUsage} or Error{kInput} for what stops the job

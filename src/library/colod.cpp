@@ -176,7 +176,7 @@ struct Scene::Impl {
     const auto start = std::chrono::steady_clock::now();
     std::vector<Message> told;
     colod::in_threads(threads, [&] {
-      colod::encode_scene(product.scene, job.output, take,
+      colod::encode_scene(product.scene, job.output, *product.depot, take,
                           [&](const colod::Message& m) { told.push_back(message_of(m)); });
     });
     if (report.empty()) notes.insert(notes.end(), told.begin(), told.end());

@@ -281,7 +281,13 @@ void drop_geometry(Building& b) {
   b.source.mesh = {};
   b.source.cloud = {};
   b.source.face_object = std::vector<int>();
+  b.source.look = {};
   b.planes = {};
+}
+
+void note_look(Building& b) {
+  b.has_texture = b.source.look.has_detail();
+  b.has_colors = !b.source.look.is_empty();
 }
 
 Building segment_building(Turn turn, const Options& options) {
@@ -294,6 +300,7 @@ Building segment_building(Turn turn, const Options& options) {
     b.source = localize(source, b.frame);
     find_segments(b, options);
     b.left_out = b.source.left_out;
+    note_look(b);
     tell_parted(b);
   } catch (const Error& e) {
     b.failure = e.what();

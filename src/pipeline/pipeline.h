@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/bake.h"
 #include "coanalysis/clustering.h"
 #include "coanalysis/selection.h"
 #include "core/error.h"
@@ -36,6 +37,12 @@ const char* to_string(StandIn reason);
 /// Whether it hides that the layer went wrong.
 bool is_failure(StandIn reason);
 
+/// A layer's texture as it was written.
+struct LayerTexture {
+  BakeFacts facts;
+  std::size_t bytes = 0;  ///< of the encoded image
+};
+
 /// One layer of one building with its measures.
 struct Layer {
   int layer = 0;        ///< 0 = coarsest
@@ -48,7 +55,8 @@ struct Layer {
   double own_gsd = 0;  ///< metres a pixel: where the layer may stand by this building's measure …
   double gsd = 0;      ///< … and where it does (set by decide_switches)
   std::size_t bytes = 0;  ///< of its mesh as the building's GLB packs it; 0: none written
-  std::string failure;    ///< why there is no mesh; empty: there is one
+  std::optional<LayerTexture> texture;  ///< none: none was made
+  std::string failure;                  ///< why there is no mesh; empty: there is one
   StandIn stand_in = StandIn::kNone;
   double invented =
       -1;  ///< 0..1 of its surface far from the source (measure/scene_part.h); −1: unknown
@@ -78,6 +86,8 @@ struct Building {
   std::vector<int> layer_of_segment;    ///< 0..l_n − 1
   std::vector<Layer> layers;            ///< l_n of them unless the building failed
   Timings timings;
+  bool has_texture = false;       ///< the source shows more than one colour a face …
+  bool has_colors = false;        ///< … or any colour at all
   std::vector<LeftOut> left_out;  ///< of the source, and why
   double solid = -1;  ///< m³ that the source encloses (measure/solid.h); −1: not measured
   std::vector<std::string> warnings;
@@ -120,6 +130,9 @@ struct Scene {
 };
 
 Counts count(const Building& building);
+
+/// Sets has_texture and has_colors by the source.
+void note_look(Building& building);
 
 /// Lets go of source and planes, by far the most of a building's memory; counts and the rest stay.
 void drop_geometry(Building& building);

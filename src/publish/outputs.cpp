@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "dress.h"
 #include "exporters/gltf/engine.h"
 #include "exporters/gltf/glb.h"
 #include "exporters/html_report/html_report.h"
@@ -61,7 +62,11 @@ std::vector<Encoded> building_files(const ExportBuilding& out, const SwitchFacts
       files.push_back(std::move(file));
   for (const ExportLevel& level : out.levels)
     for (const int layer : level.layers) {
-      if (writes(a, "obj")) files.push_back(encode_obj(out, level, layer));
+      if (writes(a, "obj")) {
+        files.push_back(encode_obj(out, level, layer));
+        for (Encoded& file : encode_obj_material(out, level, layer))
+          files.push_back(std::move(file));
+      }
       if (writes(a, "ply")) files.push_back(encode_ply(out, level, layer));
     }
   return files;
@@ -77,16 +82,38 @@ std::vector<Building*> by_name(Scene& scene) {
   return sorted;
 }
 
+/// Brings the source back for as long as its layers are dressed.
+void dress_from(Depot& depot, const TextureOptions& options, const ImageCache& images, Building& b,
+                ExportBuilding& out) {
+  if (!is_dressed(b, options)) return;
+  depot.get(b);
+  try {
+    dress(b, options, images, out);
+  } catch (const std::exception& e) {  // a failure of its looks alone
+    b.warnings.push_back(std::string("is written without textures: ") + e.what());
+    for (ExportLevel& level : out.levels) level.look = {};
+  }
+  depot.drop(b);
+}
+
+/// Of the levels' pixels only the coarsest's are needed after a building's own files: groups of far
+/// buildings share an atlas.
+void let_go_of_pixels(ExportBuilding& out) {
+  for (std::size_t i = 1; i < out.levels.size(); ++i) out.levels[i].look.raster = {};
+}
+
 /// A building that cannot be encoded fails alone.
-void encode_building(const ExportBuilding& out, const SwitchFacts& facts, const OutputOptions& a,
-                     Building& b, const Take& take) {
+void encode_building(ExportBuilding& out, const SwitchFacts& facts, const OutputOptions& a,
+                     const ImageCache& images, Depot& depot, Building& b, const Take& take) {
   std::vector<Encoded> files;
+  dress_from(depot, a.texture, images, b, out);
   try {
     files = building_files(out, facts, a, b);
   } catch (const std::exception& e) {
     b.failure = b.source.name + ": cannot be exported: " + e.what();
   }
   for (const Encoded& file : files) take(file);
+  let_go_of_pixels(out);
 }
 
 /// A tileset that cannot be made leaves the buildings' files and the report as they are.
@@ -100,6 +127,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .quantization = a.quantization,
                             .target_sse = a.target_sse,
                             .switching = facts,
+                            .largest_texture = a.texture.largest,
                             .placement = find_placement(scene, a.crs, a.origin, buildings, tell)});
   } catch (const std::exception& e) {
     scene.tileset_failure = e.what();
@@ -123,7 +151,8 @@ void check_place(const OutputOptions& a) {
     place_on_earth(*given, Vec3::Zero());
 }
 
-void encode_scene(Scene& scene, const OutputOptions& a, const Take& take, const Tell& tell) {
+void encode_scene(Scene& scene, const OutputOptions& a, Depot& depot, const Take& take,
+                  const Tell& tell) {
   Stopwatch watch(scene.export_seconds);
   scene.tileset_failure.clear();
   const SwitchFacts facts = switch_facts(scene.switching);
@@ -132,9 +161,10 @@ void encode_scene(Scene& scene, const OutputOptions& a, const Take& take, const 
   for (Building* b : by_name(scene))
     if (ExportBuilding out = export_building(*b); !out.levels.empty())
       buildings.push_back(std::move(out)), sources.push_back(b);
+  const ImageCache images(static_cast<std::size_t>(a.texture.memory * (1 << 20)));
   parallel_for(buildings.size(), [&](std::size_t i) {
     Stopwatch own(sources[i]->timings.export_);
-    encode_building(buildings[i], facts, a, *sources[i], take);
+    encode_building(buildings[i], facts, a, images, depot, *sources[i], take);
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < buildings.size(); ++i)

@@ -13,11 +13,25 @@
 
 namespace colod {
 
+/// kAuto: textures where a source shows more than one colour a face; kColors: one colour a facet,
+/// as vertex colours, where it has any colour.
+enum class Texture { kAuto, kNone, kColors };
+
+struct TextureOptions {
+  Texture mode = Texture::kAuto;
+  double texel = 0;    ///< metres, of the finest layer; 0: as the source
+  int largest = 4096;  ///< texels a side of an atlas
+  ImageFormat format = ImageFormat::kJpeg;
+  int quality = 85;
+  double memory = 512;  ///< MiB that decoded images may take
+};
+
 struct OutputOptions {
   std::vector<std::string> formats = {"glb", "3dtiles"};
   Compression compression = Compression::kDraco;
   double quantization = 0.01, target_sse = 16;
   SwitchOptions switching;
+  TextureOptions texture;
   std::string crs, origin;   ///< empty: what lies beside the sources says
   bool has_no_page = false;  ///< no report.html
 };
@@ -34,11 +48,13 @@ SwitchOptions switch_options(const OutputOptions& options);
 /// Throws Error{kUsage} when crs and origin name no place; before the work rather than after.
 void check_place(const OutputOptions& options);
 
-/// After decide_switches: makes the files of all buildings, then those of the scene, tileset.json
+/// After decide_switches: dresses the layers of each building in what its source looks like, which
+/// `depot` brings back, makes the files of all buildings, then those of the scene, tileset.json
 /// last; notes their seconds and bytes, and tells where on Earth the tileset is, if anywhere. A
 /// building that cannot be encoded becomes a failed one, a tileset that cannot is told of by
 /// Scene::tileset_failure.
-void encode_scene(Scene& scene, const OutputOptions& options, const Take& take, const Tell& tell);
+void encode_scene(Scene& scene, const OutputOptions& options, Depot& depot, const Take& take,
+                  const Tell& tell);
 
 /// After encode_scene: report.html, unless options say no, and report.json. Without pictures the
 /// page has none.

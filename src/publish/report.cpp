@@ -42,6 +42,13 @@ Json looks_in_world(Looks looks, const Vec3& origin) {
   return json;
 }
 
+Json texture_json(const LayerTexture& texture) {
+  const BakeFacts& f = texture.facts;
+  return {{"width", f.width},     {"height", f.height},     {"texel", f.texel},
+          {"charts", f.charts},   {"bytes", texture.bytes}, {"seen", f.seen},
+          {"nearest", f.nearest}, {"filled", f.filled},     {"unseen", f.unseen}};
+}
+
 Json layer_json(const Layer& layer, const Vec3& origin) {
   Json json{{"layer", layer.layer}, {"segments", layer.segments}};
   if (!layer.failure.empty()) {
@@ -74,6 +81,7 @@ Json layer_json(const Layer& layer, const Vec3& origin) {
                         {"failure", is_failure(layer.stand_in)},
                         {"message", describe(layer.stand_in)}};
   if (layer.bytes > 0) json["bytes"] = layer.bytes;
+  if (layer.texture) json["texture"] = texture_json(*layer.texture);
   return json;
 }
 

@@ -20,6 +20,12 @@ struct RawFile {
   std::vector<int> face_begin;  ///< start in `corners` per polygon; the end is the next start
   std::vector<int> face_group;  ///< per polygon: OBJ `g` or PLY `object`; empty: the file has none
   std::vector<int> face_part;   ///< per polygon: index into `parts`; empty: the file has none
+  std::vector<int> face_material;  ///< per polygon: index into `materials`, −1: none; or empty
+  std::vector<Vec2f> corner_uvs;   ///< as long as `corners`, 0,0 the upper left; or empty
+  std::vector<Rgb> corner_colors;  ///< as long as `corners`; or empty
+  std::vector<Rgb> point_colors;   ///< per point, for corners without; or empty
+  std::vector<Material> materials;
+  std::vector<ImagePlace> images;     ///< that materials name
   std::vector<std::string> parts;     ///< OBJ `o` objects, glTF nodes: one building each when split
   std::vector<int> part_parent;       ///< per part: the part that it is a level of detail of, −1:
                                       ///< none; empty: none of them is

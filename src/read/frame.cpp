@@ -163,6 +163,22 @@ std::vector<int> sort_and_merge(std::vector<Vec3>& vertices) {
   return new_index;
 }
 
+/// The corners' coordinates and colours of the faces that stayed, which begin at another corner
+/// now.
+void localize_look(const Source& source, const Source& local, const std::vector<int>& new_index,
+                   const std::vector<int>& original, Appearance& look) {
+  look.pick(original);
+  for (std::size_t f = 0; f < original.size(); ++f) {
+    const Face& before = source.mesh.faces[static_cast<std::size_t>(original[f])];
+    int first = 0;
+    while (first < 2 && new_index[before[first]] != local.mesh.faces[f][0]) ++first;
+    if (!look.uvs.empty())
+      std::rotate(look.uvs[f].begin(), look.uvs[f].begin() + first, look.uvs[f].end());
+    if (!look.colors.empty())
+      std::rotate(look.colors[f].begin(), look.colors[f].begin() + first, look.colors[f].end());
+  }
+}
+
 void localize_mesh(const Source& source, Source& local, std::vector<int>& original) {
   const std::vector<int> new_index = sort_and_merge(local.mesh.vertices);
   std::vector<std::pair<Face, int>> faces;
@@ -187,6 +203,7 @@ void localize_mesh(const Source& source, Source& local, std::vector<int>& origin
     local.warnings.push_back(std::to_string(kept - faces.size()) + " duplicate faces dropped");
   local.mesh.faces.clear();
   for (const auto& [face, item] : faces) local.mesh.faces.push_back(face), original.push_back(item);
+  if (!source.look.is_empty()) localize_look(source, local, new_index, original, local.look);
 }
 
 void localize_cloud(Source& local, std::vector<int>& original) {

@@ -46,6 +46,7 @@ class SceneReader {
   SceneReader(const std::string& path, GltfDocument& document, double input_memory)
       : gltf_(path, document.model, input_memory),
         model_(document.model),
+        look_(document.look),
         warnings_(document.warnings),
         is_visited_(model_.nodes.size(), 0),
         is_coarser_(model_.nodes.size(), 0) {}
@@ -67,15 +68,18 @@ class SceneReader {
   void add_node(int node, const Matrix& parent, int part);
   void add_mesh(const tinygltf::Node& node, const std::vector<Matrix>& places, int part,
                 bool is_one_each);
-  void place(const GltfPrimitive& own, const Matrix& matrix, int part);
+  void place(const GltfPrimitive& own, const Matrix& matrix, int part, int material);
+  void place_look(const GltfPrimitive& own, int corner, int material);
+  void drop_missing_look();
   void set_origin();
 
   GltfReader gltf_;
   const tinygltf::Model& model_;
+  const GltfLook& look_;
   std::vector<std::string>& warnings_;
   std::vector<char> is_visited_, is_coarser_;
   RawFile raw_;
-  bool has_targets_ = false;
+  bool has_targets_ = false, has_colors_ = false;
 };
 
 /// The same nodes; all of them are there.
@@ -175,7 +179,20 @@ std::vector<int> SceneReader::parts_of(const std::vector<int>& children, int par
   return parts;
 }
 
-void SceneReader::place(const GltfPrimitive& own, const Matrix& matrix, int part) {
+/// How the last corner looks.
+void SceneReader::place_look(const GltfPrimitive& own, int corner, int material) {
+  const auto i = static_cast<std::size_t>(corner);
+  Vec2f uv(NAN, NAN);
+  if (i < own.uvs.size() && material >= 0)
+    uv = (look_.materials[static_cast<std::size_t>(material)].place *
+          Vec3(own.uvs[i].x(), own.uvs[i].y(), 1))
+             .cast<float>();
+  raw_.corner_uvs.push_back(uv);
+  raw_.corner_colors.push_back(i < own.colors.size() ? own.colors[i] : Rgb{255, 255, 255});
+  has_colors_ = has_colors_ || i < own.colors.size();
+}
+
+void SceneReader::place(const GltfPrimitive& own, const Matrix& matrix, int part, int material) {
   gltf_.spend(own.points.size() + own.corners.size());
   const bool is_mirrored = matrix.topLeftCorner<3, 3>().determinant() < 0;
   const int base = static_cast<int>(raw_.points.size());
@@ -186,8 +203,12 @@ void SceneReader::place(const GltfPrimitive& own, const Matrix& matrix, int part
   for (std::size_t c = 0; c < own.corners.size(); c += 3) {
     raw_.face_begin.push_back(static_cast<int>(raw_.corners.size()));
     raw_.face_part.push_back(part);
-    for (std::size_t k = 0; k < 3; ++k)
-      raw_.corners.push_back(base + own.corners[c + (is_mirrored ? 2 - k : k)]);
+    raw_.face_material.push_back(material);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int corner = own.corners[c + (is_mirrored ? 2 - k : k)];
+      raw_.corners.push_back(base + corner);
+      place_look(own, corner, material);
+    }
   }
 }
 
@@ -197,9 +218,11 @@ void SceneReader::add_mesh(const tinygltf::Node& node, const std::vector<Matrix>
   if (node.mesh < 0) return;
   for (const tinygltf::Primitive& p : gltf_.at(model_.meshes, node.mesh, "mesh").primitives) {
     has_targets_ = has_targets_ || !p.targets.empty();
-    const GltfPrimitive own = gltf_.primitive(p);
+    const int material = p.material < static_cast<int>(look_.materials.size()) ? p.material : -1;
+    const GltfPrimitive own = gltf_.primitive(
+        p, material < 0 ? 0 : look_.materials[static_cast<std::size_t>(material)].uv_set);
     for (std::size_t i = 0; i < places.size(); ++i)
-      place(own, places[i], is_one_each ? part + static_cast<int>(i) : part);
+      place(own, places[i], is_one_each ? part + static_cast<int>(i) : part, material);
   }
 }
 
@@ -260,6 +283,15 @@ void SceneReader::set_origin() {
         "buildings may lie tilted");
 }
 
+/// Arrays that say nothing are none.
+void SceneReader::drop_missing_look() {
+  raw_.images = look_.images;
+  for (const GltfMaterial& m : look_.materials) raw_.materials.push_back(m.material);
+  if (raw_.materials.empty()) raw_.face_material.clear();
+  if (raw_.images.empty()) raw_.corner_uvs.clear();
+  if (!has_colors_) raw_.corner_colors.clear();
+}
+
 RawFile SceneReader::read(int coarser) {
   raw_.is_soup = raw_.is_turned = true;
   for (std::size_t i = 0; i < is_coarser_.size(); ++i)
@@ -276,6 +308,7 @@ RawFile SceneReader::read(int coarser) {
   }
   for (const int top : tops) add_top(coarser_node(top, coarser), above);
   set_origin();
+  drop_missing_look();
   if (has_targets_)
     warnings_.push_back("has morph targets, which are not read: shapes are those at rest");
   raw_.warnings = warnings_;

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +13,29 @@
 
 namespace colod::mesh_io {
 
+/// A material, and how its image lies on a surface.
+struct GltfMaterial {
+  Material material;
+  int uv_set = 0;  ///< of TEXCOORD_<n>
+  Eigen::Matrix<double, 2, 3> place =
+      Eigen::Matrix<double, 2, 3>::Identity();  ///< KHR_texture_transform
+};
+
+/// What a file says of how its primitives look.
+struct GltfLook {
+  std::vector<GltfMaterial> materials;  ///< by the file's numbers
+  std::vector<ImagePlace> images;
+};
+
+/// Faults cost an image, with a warning, and nothing else. `binary`: where the GLB's own buffer
+/// begins in the file.
+GltfLook read_gltf_look(const std::string& path, std::string_view bytes, std::size_t binary,
+                        const nlohmann::json& json, std::vector<std::string>& warnings);
+
 /// A file as tinygltf took it apart, without what shapes do not need.
 struct GltfDocument {
   tinygltf::Model model;
+  GltfLook look;
   std::vector<std::string> warnings;
 };
 
@@ -30,6 +51,8 @@ const tinygltf::Value* extension_of(const tinygltf::ExtensionMap& extensions, co
 struct GltfPrimitive {
   std::vector<Vec3> points;
   std::vector<int> corners;  ///< three a triangle; empty: points or lines only
+  std::vector<Vec2f> uvs;    ///< per point, 0,0 the upper left; or empty
+  std::vector<Rgb> colors;   ///< per point, or empty
 };
 
 /// Everything that is checked when a document is read: tinygltf hands out indices, offsets and
@@ -56,7 +79,8 @@ class GltfReader {
 
   /// count × components numbers, as floats or normalized.
   std::vector<double> values(int accessor, int components) const;
-  GltfPrimitive primitive(const tinygltf::Primitive& primitive) const;
+  /// With the texture coordinates of this set, where it has them.
+  GltfPrimitive primitive(const tinygltf::Primitive& primitive, int uv_set) const;
 
   /// Counts what is placed. A file may hold few bytes and say that they stand in many places: it
   /// fails where that comes to more corners than `input_memory` has room for, beyond what its bytes
@@ -76,7 +100,8 @@ class GltfReader {
                          const std::string& place) const;
   void replace_sparse(const tinygltf::Accessor& accessor, int components, const std::string& place,
                       std::vector<double>& values) const;
-  GltfPrimitive draco(const tinygltf::Value& extension) const;
+  GltfPrimitive draco(const tinygltf::Value& extension, int uv_set) const;
+  void add_look(const tinygltf::Primitive& primitive, int uv_set, GltfPrimitive& out) const;
 
   const std::string& path_;
   const tinygltf::Model& model_;

@@ -237,7 +237,52 @@ std::vector<double> GltfReader::values(int accessor, int components) const {
   return values;
 }
 
-GltfPrimitive GltfReader::draco(const Value& extension) const {
+namespace {
+
+Rgb rgb_of_linear(const double* rgb) {
+  Rgb out;
+  for (int k = 0; k < 3; ++k) out[k] = to_srgb(static_cast<float>(std::clamp(rgb[k], 0.0, 1.0)));
+  return out;
+}
+
+/// All values of an attribute of a decoded stream, `components` each; empty: it has none of the id.
+std::vector<double> draco_values(const draco::Mesh& mesh, int id, int components) {
+  std::vector<double> values;
+  const draco::PointAttribute* attribute =
+      id < 0 ? nullptr : mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+  if (!attribute) return values;
+  // Whole numbers stand for 0 … 1, which accessors of colours and coordinates call normalized.
+  const double most = attribute->data_type() == draco::DT_UINT8    ? 255
+                      : attribute->data_type() == draco::DT_UINT16 ? 65535
+                                                                   : 1;
+  for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
+    std::array<double, 4> v{};
+    const draco::AttributeValueIndex value = attribute->mapped_index(p);
+    if (value.value() >= attribute->size() ||
+        !attribute->ConvertValue<double>(value, static_cast<std::int8_t>(components), v.data()))
+      return {};
+    for (int c = 0; c < components; ++c) values.push_back(v[static_cast<std::size_t>(c)] / most);
+  }
+  return values;
+}
+
+std::vector<Vec2f> as_uvs(const std::vector<double>& values) {
+  std::vector<Vec2f> out;
+  for (std::size_t i = 0; i + 1 < values.size(); i += 2)
+    out.push_back(Vec2(values[i], values[i + 1]).cast<float>());
+  return out;
+}
+
+std::vector<Rgb> as_colors(const std::vector<double>& values, std::size_t components) {
+  std::vector<Rgb> out;
+  for (std::size_t i = 0; i + 2 < values.size(); i += components)
+    out.push_back(rgb_of_linear(&values[i]));
+  return out;
+}
+
+}  // namespace
+
+GltfPrimitive GltfReader::draco(const Value& extension, int uv_set) const {
   const View seen = view(integer(extension, "bufferView"));
   draco::DecoderBuffer buffer;
   buffer.Init(seen.bytes().data(), seen.bytes().size());
@@ -260,15 +305,36 @@ GltfPrimitive GltfReader::draco(const Value& extension) const {
   }
   for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f)
     for (int c = 0; c < 3; ++c) out.corners.push_back(static_cast<int>(mesh.face(f)[c].value()));
+  const Value& attributes = extension.Get("attributes");
+  const std::string uvs = "TEXCOORD_" + std::to_string(uv_set);
+  out.uvs = as_uvs(draco_values(mesh, integer(attributes, uvs.c_str()), 2));
+  out.colors = as_colors(draco_values(mesh, integer(attributes, "COLOR_0"), 3), 3);
   return out;
 }
 
-GltfPrimitive GltfReader::primitive(const tinygltf::Primitive& primitive) const {
+/// Texture coordinates and colours; what is wrong with them leaves shapes as they are.
+void GltfReader::add_look(const tinygltf::Primitive& primitive, int uv_set,
+                          GltfPrimitive& out) const {
+  try {
+    const auto uvs = primitive.attributes.find("TEXCOORD_" + std::to_string(uv_set));
+    if (uvs != primitive.attributes.end()) out.uvs = as_uvs(values(uvs->second, 2));
+    const auto colors = primitive.attributes.find("COLOR_0");
+    if (colors != primitive.attributes.end()) {
+      const bool has_alpha =
+          at(model_.accessors, colors->second, "accessor").type == TINYGLTF_TYPE_VEC4;
+      out.colors = as_colors(values(colors->second, has_alpha ? 4 : 3), has_alpha ? 4 : 3);
+    }
+  } catch (const Error&) {
+    out.uvs.clear(), out.colors.clear();
+  }
+}
+
+GltfPrimitive GltfReader::primitive(const tinygltf::Primitive& primitive, int uv_set) const {
   GltfPrimitive out;
   const int mode = primitive.mode;
   if (mode != TINYGLTF_MODE_POINTS && mode < TINYGLTF_MODE_TRIANGLES) return out;  // lines
   if (const Value* extension = extension_of(primitive.extensions, "KHR_draco_mesh_compression"))
-    return draco(*extension);
+    return draco(*extension, uv_set);
   const auto named = primitive.attributes.find("POSITION");
   const int position = named == primitive.attributes.end() ? -1 : named->second;
   if (position < 0) return out;
@@ -276,6 +342,7 @@ GltfPrimitive GltfReader::primitive(const tinygltf::Primitive& primitive) const 
   for (std::size_t i = 0; i < xyz.size(); i += 3)
     out.points.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
   if (mode == TINYGLTF_MODE_POINTS) return out;
+  add_look(primitive, uv_set, out);
   std::vector<int> indices(out.points.size());
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<int>(i);
   if (primitive.indices >= 0) {

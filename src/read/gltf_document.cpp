@@ -198,14 +198,8 @@ void check_extensions(const std::string& path, const Json& json,
 
 /// What the layers will not show.
 void note_losses(const Json& json, std::vector<std::string>& warnings) {
-  const auto has = [&](const char* key) { return json.contains(key) && !json[key].empty(); };
-  const std::size_t materials = has("materials") ? json["materials"].size() : 0;
-  if (has("textures") || has("images"))
-    warnings.push_back("its textures and materials are left out: layers are of one plain colour");
-  else if (materials > 1)
-    warnings.push_back("its " + std::to_string(materials) +
-                       " materials are left out: layers are of one plain colour");
-  if (has("skins")) warnings.push_back("has skins, which are not read: shapes are those at rest");
+  if (json.contains("skins") && !json["skins"].empty())
+    warnings.push_back("has skins, which are not read: shapes are those at rest");
 }
 
 /// The parser's callback. tinygltf takes whole numbers that are written as 4.0 for absent: they
@@ -341,6 +335,8 @@ GltfDocument open_gltf(const std::string& path, std::string_view bytes, double i
   GltfDocument document;
   check_extensions(path, json, document.warnings);
   note_losses(json, document.warnings);
+  const std::size_t binary = chunks.binary.empty() ? 0 : chunks.binary.data() - bytes.data();
+  document.look = read_gltf_look(path, bytes, binary, json, document.warnings);
   json = drop_shapeless(std::move(json));
   check_sizes(path, json);
   drop_draco_indices(json);

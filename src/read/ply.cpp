@@ -2,12 +2,14 @@
 // Differs: no library, so that vertices stay doubles, the face property `object` is read, and a
 // truncated file names the vertex or face where it ends. Other elements and properties are skipped.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "files.h"
 #include "formats.h"
+#include "look.h"
 
 namespace colod::mesh_io {
 
@@ -39,7 +41,8 @@ struct Header {
   std::vector<Element> elements;
   std::size_t body = 0;  // where the data start
   int lines = 0;
-  std::string remarks;  // its comments
+  std::string remarks;                // its comments
+  std::vector<std::string> textures;  // files that comments name
 };
 
 bool parse_type(std::string_view name, Type& type) {
@@ -101,6 +104,9 @@ Header read_header(const std::string& path, const std::string& bytes) {
       header.lines = lines.line_number();
       return header;
     } else if (key == "comment" || key == "obj_info") {
+      const std::string rest(lines.rest());
+      if (const std::size_t at = rest.find("TextureFile "); at != rest.npos)
+        header.textures.push_back(rest.substr(at + 12));
       header.remarks += std::string(lines.rest().substr(0, 200)) + "\n";
     } else {
       lines.fail("unknown word '" + key.substr(0, 40) + "' in the header");
@@ -190,6 +196,26 @@ void skip(Body& body, const Property& p) {
   for (int i = 0; i < n; ++i) body.next(p.type);
 }
 
+/// The properties red, green and blue, under any of their names; −1: not all are there.
+std::array<int, 3> find_colors(const Element& element) {
+  for (const char* prefix : {"", "diffuse_", "vertex_"}) {
+    std::array<int, 3> found;
+    int k = 0;
+    for (const char* name : {"red", "green", "blue"}) {
+      const int i = element.find(std::string(prefix) + name);
+      found[k++] = i >= 0 && !element.properties[i].is_list ? i : -1;
+    }
+    if (*std::min_element(found.begin(), found.end()) >= 0) return found;
+  }
+  return {-1, -1, -1};
+}
+
+/// A component of a colour, 0..1: whole numbers count to 255, or 65535 where they take 16 bits.
+double shade(double value, Type type) {
+  if (type == Type::kFloat || type == Type::kDouble) return value > 1 ? value / 255 : value;
+  return type == Type::kUint16 || type == Type::kInt16 ? value / 65535 : value / 255;
+}
+
 void read_vertices(Body& body, const Element& element, RawFile& raw) {
   static constexpr const char* kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
   std::vector<int> slot(element.properties.size(), -1);
@@ -199,6 +225,9 @@ void read_vertices(Body& body, const Element& element, RawFile& raw) {
     if (i < 0 || element.properties[i].is_list) continue;
     slot[i] = k, ++found;
   }
+  const std::array<int, 3> colors = find_colors(element);
+  const bool has_colors = colors[0] >= 0;
+  for (int k = 0; k < 3 && has_colors; ++k) slot[colors[k]] = 6 + k;
   body.set_place(element, 0);
   for (int k = 0; k < 3; ++k)
     if (element.find(kNames[k]) < 0)
@@ -206,7 +235,7 @@ void read_vertices(Body& body, const Element& element, RawFile& raw) {
   const bool has_normals = found == 6;
   for (long long v = 0; v < element.count; ++v) {
     body.set_place(element, v);
-    double values[6] = {};
+    double values[9] = {};
     for (std::size_t i = 0; i < slot.size(); ++i)
       if (slot[i] >= 0)
         values[slot[i]] = body.next(element.properties[i].type);
@@ -214,43 +243,121 @@ void read_vertices(Body& body, const Element& element, RawFile& raw) {
         skip(body, element.properties[i]);
     raw.points.emplace_back(values[0], values[1], values[2]);
     if (has_normals) raw.normals.emplace_back(values[3], values[4], values[5]);
+    if (!has_colors) continue;
+    for (int k = 0; k < 3; ++k)
+      values[6 + k] = shade(values[6 + k], element.properties[colors[k]].type);
+    raw.point_colors.push_back(rgb_of(values[6], values[7], values[8]));
   }
 }
 
-void read_faces(Body& body, const Element& element, RawFile& raw) {
-  int list = element.find("vertex_indices");
-  if (list < 0) list = element.find("vertex_index");
-  const int object = element.find("object");
-  body.set_place(element, 0);
-  if (list < 0 || !element.properties[list].is_list) {
-    if (element.count == 0) return;
-    body.fail_here("there is no list `vertex_indices`");
+/// What one face says besides its corners.
+struct FaceLook {
+  std::vector<double> uvs;  // two a corner, from the lower left
+  int texture = 0;
+  double rgb[3] = {1, 1, 1};
+};
+
+/// Faces one by one; which property is what is looked up once.
+class FaceReader {
+ public:
+  FaceReader(Body& body, const Element& element, RawFile& raw)
+      : body_(body), element_(element), raw_(raw) {
+    list_ = element.find("vertex_indices");
+    if (list_ < 0) list_ = element.find("vertex_index");
+    object_ = element.find("object");
+    uvs_ = element.find("texcoord");
+    if (uvs_ >= 0 && !element.properties[uvs_].is_list) uvs_ = -1;
+    texture_ = element.find("texnumber");
+    colors_ = find_colors(element);
   }
-  ShortFaces short_faces;
-  for (long long f = 0; f < element.count; ++f) {
-    body.set_place(element, f);
-    const int begin = static_cast<int>(raw.corners.size());
+
+  void read_all() {
+    body_.set_place(element_, 0);
+    if (list_ < 0 || !element_.properties[list_].is_list) {
+      if (element_.count == 0) return;
+      body_.fail_here("there is no list `vertex_indices`");
+    }
+    for (long long f = 0; f < element_.count; ++f) {
+      body_.set_place(element_, f);
+      read(f);
+    }
+    short_faces_.report(raw_);
+  }
+
+ private:
+  void read(long long f) {
+    const int begin = static_cast<int>(raw_.corners.size());
     int number = -1;
-    for (std::size_t i = 0; i < element.properties.size(); ++i) {
-      const Property& p = element.properties[i];
-      if (static_cast<int>(i) == list) {
-        const int n = body.next_integer(p.count);
-        for (int c = 0; c < n; ++c) raw.corners.push_back(body.next_integer(p.type));
-      } else if (static_cast<int>(i) == object && !p.is_list) {
-        number = body.next_integer(p.type);
+    FaceLook look;
+    for (std::size_t i = 0; i < element_.properties.size(); ++i) {
+      const Property& p = element_.properties[i];
+      const int property = static_cast<int>(i);
+      const auto color = std::find(colors_.begin(), colors_.end(), property);
+      if (property == list_) {
+        const int n = body_.next_integer(p.count);
+        for (int c = 0; c < n; ++c) raw_.corners.push_back(body_.next_integer(p.type));
+      } else if (property == object_ && !p.is_list) {
+        number = body_.next_integer(p.type);
+      } else if (property == uvs_) {
+        const int n = body_.next_integer(p.count);
+        for (int c = 0; c < n; ++c) look.uvs.push_back(body_.next(p.type));
+      } else if (property == texture_ && !p.is_list) {
+        const double n = body_.next(p.type);
+        look.texture = n >= 0 && n < 1e6 ? static_cast<int>(n) : -1;
+      } else if (color != colors_.end()) {
+        look.rgb[color - colors_.begin()] = shade(body_.next(p.type), p.type);
       } else {
-        skip(body, p);
+        skip(body_, p);
       }
     }
-    if (raw.corners.size() - begin < 3) {
-      raw.corners.resize(begin);
-      short_faces.add("face " + std::to_string(f));
-      continue;
+    if (raw_.corners.size() - begin < 3) {
+      raw_.corners.resize(begin);
+      short_faces_.add("face " + std::to_string(f));
+      return;
     }
-    raw.face_begin.push_back(begin);
-    if (object >= 0) raw.face_group.push_back(number);
+    raw_.face_begin.push_back(begin);
+    if (object_ >= 0) raw_.face_group.push_back(number);
+    add_look(look, raw_.corners.size() - static_cast<std::size_t>(begin));
   }
-  short_faces.report(raw);
+
+  void add_look(const FaceLook& look, std::size_t corners) {
+    if (uvs_ >= 0) {
+      const bool is_whole = look.uvs.size() == 2 * corners;
+      raw_.face_material.push_back(is_whole ? look.texture : -1);
+      for (std::size_t c = 0; c < corners; ++c)
+        raw_.corner_uvs.push_back(is_whole
+                                      ? Vec2(look.uvs[2 * c], 1 - look.uvs[2 * c + 1]).cast<float>()
+                                      : Vec2f(NAN, NAN));
+    }
+    if (colors_[0] >= 0 && raw_.point_colors.empty())
+      raw_.corner_colors.insert(raw_.corner_colors.end(), corners,
+                                rgb_of(look.rgb[0], look.rgb[1], look.rgb[2]));
+  }
+
+  Body& body_;
+  const Element& element_;
+  RawFile& raw_;
+  int list_, object_, uvs_, texture_;
+  std::array<int, 3> colors_;
+  ShortFaces short_faces_;
+};
+
+/// A material for each file that the header names.
+void add_textures(const std::string& path, const std::vector<std::string>& files, RawFile& raw) {
+  for (const std::string& name : files) {
+    raw.materials.emplace_back();
+    raw.materials.back().name = name;
+    const std::string file = find_beside(path, name);
+    if (file.empty())
+      raw.warnings.push_back("its texture '" + name.substr(0, 80) + "' is missing");
+    else
+      raw.materials.back().image = image_number(raw.images, {.path = file});
+  }
+  const int count = static_cast<int>(raw.materials.size());
+  for (int& m : raw.face_material)
+    if (m >= count) m = -1;
+  if (raw.materials.empty()) raw.face_material.clear();
+  if (raw.images.empty()) raw.corner_uvs.clear();
 }
 
 }  // namespace
@@ -266,7 +373,7 @@ RawFile read_ply(const std::string& path, const std::string& bytes) {
       read_vertices(body, element, raw);
       has_vertices = true;
     } else if (element.name == "face") {
-      read_faces(body, element, raw);
+      FaceReader(body, element, raw).read_all();
     } else if (element.name == "tristrips") {
       fail(path, "triangle strips are not read");
     } else {
@@ -276,6 +383,7 @@ RawFile read_ply(const std::string& path, const std::string& bytes) {
       }
     }
   }
+  add_textures(path, header.textures, raw);
   if (!has_vertices) fail(path, "the header names no element `vertex`");
   return raw;
 }

@@ -13,6 +13,7 @@
 #include "core/stopwatch.h"
 #include "files.h"
 #include "formats.h"
+#include "look.h"
 #include "split.h"
 
 namespace colod {
@@ -108,7 +109,9 @@ Triangles triangulate(const RawFile& raw, int& dropped) {
     }
     const int* corner = &raw.corners[raw.face_begin[f]];
     for (const Face& t : mesh_io::triangulate_ring(ring)) {
+      const int first = raw.face_begin[f];
       out.faces.push_back({corner[t[0]], corner[t[1]], corner[t[2]]});
+      out.corners.push_back({first + t[0], first + t[1], first + t[2]});
       out.polygon.push_back(f);
     }
   }
@@ -131,6 +134,7 @@ Source take(const RawFile& raw, const Triangles& all, const std::vector<int>& ch
     s.mesh.faces.push_back({number[f[0]], number[f[1]], number[f[2]]});
     if (!raw.face_group.empty()) s.face_object.push_back(raw.face_group[all.polygon[t]]);
   }
+  s.look = mesh_io::look_of(raw, all.corners, all.polygon, chosen);
   return s;
 }
 
@@ -152,6 +156,7 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
   if (raw.face_count() == 0) {
     sources.push_back(mesh_io::read_cloud(path, raw));
   } else {
+    mesh_io::color_corners(raw);
     if (raw.is_soup) {
       const std::vector<int> first = mesh_io::weld(raw.points);
       for (int& c : raw.corners) c = first[c];

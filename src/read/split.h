@@ -13,6 +13,7 @@ namespace colod::mesh_io {
 /// The triangles of a file and the polygon each came from.
 struct Triangles {
   std::vector<Face> faces;
+  std::vector<Face> corners;  ///< of each: places in the file's list of corners
   std::vector<int> polygon;
 };
 

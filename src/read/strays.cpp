@@ -164,8 +164,9 @@ class Judge {
 };
 
 /// Lets go of the faces that touch a stray and of the vertices that none uses any more.
-void drop(Mesh& mesh, std::vector<int>& face_object, const std::vector<char>& is_stray) {
-  std::vector<int> number(mesh.vertices.size(), -1);
+void drop(Source& source, const std::vector<char>& is_stray) {
+  Mesh& mesh = source.mesh;
+  std::vector<int> number(mesh.vertices.size(), -1), faces;
   Mesh kept;
   std::vector<int> objects;
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
@@ -173,7 +174,8 @@ void drop(Mesh& mesh, std::vector<int>& face_object, const std::vector<char>& is
     if (is_stray[f[0]] || is_stray[f[1]] || is_stray[f[2]]) continue;
     for (const int v : f) number[v] = 0;
     kept.faces.push_back(f);
-    if (!face_object.empty()) objects.push_back(face_object[i]);
+    faces.push_back(static_cast<int>(i));
+    if (!source.face_object.empty()) objects.push_back(source.face_object[i]);
   }
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
@@ -183,7 +185,8 @@ void drop(Mesh& mesh, std::vector<int>& face_object, const std::vector<char>& is
   for (Face& f : kept.faces)
     for (int& v : f) v = number[v];
   mesh = std::move(kept);
-  face_object = std::move(objects);
+  source.face_object = std::move(objects);
+  source.look.pick(faces);
 }
 
 void drop(PointCloud& cloud, const std::vector<char>& is_stray) {
@@ -249,7 +252,7 @@ void leave_out_strays(Source& s) {
                        " m away from all the rest; --split component keeps pieces apart");
   s.left_out.push_back(out);
   if (s.is_mesh())
-    drop(s.mesh, s.face_object, is_stray);
+    drop(s, is_stray);
   else
     drop(s.cloud, is_stray);
 }

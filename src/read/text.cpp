@@ -9,6 +9,7 @@
 
 #include "files.h"
 #include "formats.h"
+#include "look.h"
 
 namespace colod::mesh_io {
 
@@ -165,56 +166,142 @@ struct Numbering {
   }
 };
 
-/// One corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative counts back from the last vertex.
-int obj_corner(Lines& lines, std::string_view token, int points) {
-  token = token.substr(0, token.find('/'));
+/// An index of a corner; negative counts back from the last one.
+int obj_index(Lines& lines, std::string_view token, int count) {
   int i = 0;
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), i);
   if (error != std::errc() || end != token.data() + token.size() || i == 0)
     lines.fail("'" + std::string(token.substr(0, 40)) + "' is not a vertex index");
-  if (i < -points) lines.fail("a face counts back beyond the first vertex");
-  return i < 0 ? points + i : i - 1;
+  if (i < -count) lines.fail("a face counts back beyond the first vertex");
+  return i < 0 ? count + i : i - 1;
 }
+
+/// An OBJ while its lines are read.
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, const std::string& bytes)
+      : lines_(path, bytes), library_(path) {
+    raw_.remarks = head_remarks(bytes);
+    lines_.allow_continuation();
+  }
+
+  RawFile read() {
+    while (lines_.next()) read_line(lower(std::string(lines_.token())));
+    if (groups_.names.empty()) raw_.face_group.clear();
+    if (objects_.names.empty()) raw_.face_part.clear();
+    raw_.parts = objects_.names;
+    raw_.groups = groups_.names;
+    short_faces_.report(raw_);
+    add_look();
+    return std::move(raw_);
+  }
+
+ private:
+  void read_line(const std::string& key) {
+    if (key == "v") {
+      add_point();
+    } else if (key == "vt") {
+      const std::vector<double> uv = numbers_left();
+      uvs_.emplace_back(uv.empty() ? NAN : uv[0], uv.size() < 2 ? 0 : uv[1]);
+    } else if (key == "f") {
+      add_face();
+    } else if (key == "g") {
+      group_ = groups_.number(trimmed(lines_.rest()));
+    } else if (key == "o") {
+      object_ = objects_.number(trimmed(lines_.rest()));
+    } else if (key == "mtllib") {
+      library_.load(trimmed(lines_.rest()));
+    } else if (key == "usemtl") {
+      material_ = library_.number(trimmed(lines_.rest()));
+    }
+  }
+
+  /// The numbers at the head of what is left of a line, which is not taken: whatever stands there,
+  /// shapes do not depend on it.
+  std::vector<double> numbers_left() const {
+    std::vector<double> out;
+    std::string_view rest = lines_.rest();
+    for (double value = 0; out.size() < 5;) {
+      while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+      const std::size_t end = std::min(rest.find_first_of(" \t\v\f"), rest.size());
+      if (end == 0 || !parse_number(rest.substr(0, end), value)) break;
+      out.push_back(value);
+      rest.remove_prefix(end);
+    }
+    return out;
+  }
+
+  /// Three coordinates, and perhaps the colour that many programs write behind them.
+  void add_point() {
+    raw_.points.push_back(read_vec3(lines_));
+    const std::vector<double> more = numbers_left();
+    if (more.size() == 3 && raw_.point_colors.size() + 1 == raw_.points.size())
+      raw_.point_colors.push_back(rgb_of(more[0], more[1], more[2]));
+  }
+
+  void add_face() {
+    const std::size_t begin = raw_.corners.size();
+    while (lines_.has_token()) add_corner(lines_.token());
+    if (raw_.corners.size() - begin < 3) {
+      raw_.corners.resize(begin);
+      corner_uv_.resize(begin);
+      short_faces_.add("line " + std::to_string(lines_.line_number()));
+      return;
+    }
+    raw_.face_begin.push_back(static_cast<int>(begin));
+    raw_.face_group.push_back(group_);
+    raw_.face_part.push_back(object_);
+    raw_.face_material.push_back(material_);
+  }
+
+  /// `v`, `v/vt`, `v//vn` or `v/vt/vn`. Texture coordinates that are no index are none.
+  void add_corner(std::string_view token) {
+    const std::size_t slash = std::min(token.find('/'), token.size());
+    raw_.corners.push_back(
+        obj_index(lines_, token.substr(0, slash), static_cast<int>(raw_.points.size())));
+    token.remove_prefix(std::min(slash + 1, token.size()));
+    token = token.substr(0, token.find('/'));
+    int i = 0;
+    std::from_chars(token.data(), token.data() + token.size(), i);
+    corner_uv_.push_back(i < 0 ? static_cast<int>(uvs_.size()) + i : i - 1);
+  }
+
+  /// Coordinates as materials place them, from the upper left.
+  void add_look() {
+    raw_.images = library_.images();
+    for (const MtlMaterial& m : library_.materials()) raw_.materials.push_back(m.material);
+    raw_.warnings.insert(raw_.warnings.end(), library_.warnings().begin(),
+                         library_.warnings().end());
+    if (raw_.point_colors.size() != raw_.points.size()) raw_.point_colors.clear();
+    if (raw_.materials.empty()) raw_.face_material.clear();
+    if (raw_.images.empty()) return;
+    raw_.corner_uvs.assign(raw_.corners.size(), Vec2f(NAN, NAN));
+    for (int f = 0; f < raw_.face_count(); ++f) {
+      if (raw_.face_material[f] < 0) continue;
+      const MtlMaterial& m = library_.materials()[raw_.face_material[f]];
+      for (int c = raw_.face_begin[f]; c < raw_.face_end(f); ++c) {
+        const int i = corner_uv_[c];
+        if (i < 0 || i >= static_cast<int>(uvs_.size())) continue;
+        const Vec2 uv = m.scale.cwiseProduct(uvs_[i]) + m.shift;
+        raw_.corner_uvs[c] = Vec2(uv.x(), 1 - uv.y()).cast<float>();
+      }
+    }
+  }
+
+  Lines lines_;
+  MtlLibrary library_;
+  RawFile raw_;
+  Numbering groups_, objects_;
+  int group_ = -1, object_ = -1, material_ = -1;
+  std::vector<Vec2> uvs_;
+  std::vector<int> corner_uv_;  // per corner: index into uvs_, perhaps one that is not there
+  ShortFaces short_faces_;
+};
 
 }  // namespace
 
 RawFile read_obj(const std::string& path, const std::string& bytes) {
-  RawFile raw;
-  raw.remarks = head_remarks(bytes);
-  Numbering groups, objects;
-  int group = -1, object = -1;
-  ShortFaces short_faces;
-  Lines lines(path, bytes);
-  lines.allow_continuation();
-  while (lines.next()) {
-    const std::string key = lower(std::string(lines.token()));
-    if (key == "v") {
-      raw.points.push_back(read_vec3(lines));
-    } else if (key == "f") {
-      const int begin = static_cast<int>(raw.corners.size());
-      while (lines.has_token())
-        raw.corners.push_back(
-            obj_corner(lines, lines.token(), static_cast<int>(raw.points.size())));
-      if (raw.corners.size() - begin < 3) {
-        raw.corners.resize(begin);
-        short_faces.add("line " + std::to_string(lines.line_number()));
-        continue;
-      }
-      raw.face_begin.push_back(begin);
-      raw.face_group.push_back(group);
-      raw.face_part.push_back(object);
-    } else if (key == "g") {
-      group = groups.number(trimmed(lines.rest()));
-    } else if (key == "o") {
-      object = objects.number(trimmed(lines.rest()));
-    }
-  }
-  if (groups.names.empty()) raw.face_group.clear();
-  if (objects.names.empty()) raw.face_part.clear();
-  raw.parts = objects.names;
-  raw.groups = groups.names;
-  short_faces.report(raw);
-  return raw;
+  return ObjReader(path, bytes).read();
 }
 
 RawFile read_off(const std::string& path, const std::string& bytes) {

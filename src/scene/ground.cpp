@@ -261,6 +261,7 @@ Source keep_faces(const Source& source, const std::vector<char>& is_kept) {
   Source part = source;
   part.mesh = {};
   part.face_object.clear();
+  std::vector<int> kept;
   std::vector<char> is_used(source.mesh.vertices.size(), 0);
   for (std::size_t i = 0; i < is_kept.size(); ++i)
     for (const int v : source.mesh.faces[i]) is_used[v] |= is_kept[i];
@@ -274,8 +275,10 @@ Source keep_faces(const Source& source, const std::vector<char>& is_kept) {
     if (!is_kept[i]) continue;
     const Face& f = source.mesh.faces[i];
     part.mesh.faces.push_back({number[f[0]], number[f[1]], number[f[2]]});
+    kept.push_back(static_cast<int>(i));
     if (!source.face_object.empty()) part.face_object.push_back(source.face_object[i]);
   }
+  part.look.pick(kept);
   return part;
 }
 

@@ -249,7 +249,32 @@ std::vector<double> seen_shares(const Lookout& lookout, const Mesh& mesh) {
   return shares;
 }
 
-/// Faces that are seen in part become their pieces; `source.face_object` follows.
+/// How a piece of a face looks, by where its corners lie in the face.
+void cut_look(const Mesh& before, const hidden::Pieces& pieces, Appearance& look) {
+  const Appearance whole = look;
+  look.pick(pieces.face_of);
+  for (std::size_t i = 0; i < pieces.face_of.size(); ++i) {
+    const auto face = static_cast<std::size_t>(pieces.face_of[i]);
+    const Face &f = before.faces[face], &piece = pieces.mesh.faces[i];
+    if (piece == f) continue;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3 weight = barycentric(before, f, pieces.mesh.vertices[piece[c]]);
+      if (!whole.uvs.empty()) {
+        const auto& uv = whole.uvs[face];
+        look.uvs[i][c] = (weight[0] * uv[0].cast<double>() + weight[1] * uv[1].cast<double>() +
+                          weight[2] * uv[2].cast<double>())
+                             .cast<float>();
+      }
+      for (int k = 0; k < 3 && !whole.colors.empty(); ++k) {
+        double value = 0;
+        for (int w = 0; w < 3; ++w) value += weight[w] * whole.colors[face][w][k];
+        look.colors[i][c][k] = static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
+      }
+    }
+  }
+}
+
+/// Faces that are seen in part become their pieces; `source.face_object` and `look` follow.
 void cut_half_seen(const std::vector<double>& shares, Source& source) {
   std::vector<char> is_cut;
   for (const double share : shares) is_cut.push_back(share > 0 && share < 1);
@@ -264,19 +289,23 @@ void cut_half_seen(const std::vector<double>& shares, Source& source) {
     for (const int f : pieces.face_of) object.push_back(source.face_object[f]);
     source.face_object = std::move(object);
   }
+  if (!source.look.is_empty()) cut_look(source.mesh, pieces, source.look);
   source.mesh = std::move(pieces.mesh);
 }
 
 void drop_faces(const std::vector<char>& is_dropped, Source& source) {
   std::size_t kept = 0;
+  std::vector<int> faces;
   for (std::size_t i = 0; i < is_dropped.size(); ++i) {
     if (is_dropped[i]) continue;
+    faces.push_back(static_cast<int>(i));
     source.mesh.faces[kept] = source.mesh.faces[i];
     if (!source.face_object.empty()) source.face_object[kept] = source.face_object[i];
     ++kept;
   }
   source.mesh.faces.resize(kept);
   if (!source.face_object.empty()) source.face_object.resize(kept);
+  source.look.pick(faces);
 }
 
 }  // namespace

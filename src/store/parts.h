@@ -128,6 +128,9 @@ struct Store::Impl {
   void get_layers(Building& b) const;
 };
 
+/// Materials and images of a source's look.
+std::string look_json(const Appearance& look);
+
 /// The columns is_like_finer, deviation, profile.
 LayerSight read_sight(Statement& s);
 

@@ -40,6 +40,10 @@ ElementKind kind_of(std::int64_t stored) {
   return ElementKind::kPlain;
 }
 
+Wrap wrap_of(int stored) {
+  return stored == 1 ? Wrap::kMirror : stored == 2 ? Wrap::kClamp : Wrap::kRepeat;
+}
+
 StandIn stand_in_of(std::int64_t stored) {
   for (const StandIn reason : {StandIn::kRicher, StandIn::kInvented, StandIn::kVolume})
     if (stored == static_cast<int>(reason)) return reason;
@@ -101,6 +105,39 @@ void check_range(const PolygonMesh& mesh, const std::string& path) {
     throw Error(Stage::kInput, path, "damaged: a mesh has lost facets of its triangles");
 }
 
+void read_look(const Json& json, Appearance& look) {
+  for (const Json& i : json.at("images"))
+    look.images.push_back({.path = i.at("path").get<std::string>(),
+                           .offset = i.at("offset").get<std::size_t>(),
+                           .length = i.at("length").get<std::size_t>(),
+                           .is_base64 = i.at("is_base64").get<bool>(),
+                           .skip = i.at("skip").get<std::size_t>(),
+                           .take = i.at("take").get<std::size_t>()});
+  for (const Json& m : json.at("materials")) {
+    Material material;
+    material.name = m.at("name").get<std::string>();
+    material.color = m.at("color").get<std::array<float, 3>>();
+    material.image = m.at("image").get<int>();
+    material.wrap_u = wrap_of(m.at("wrap_u").get<int>());
+    material.wrap_v = wrap_of(m.at("wrap_v").get<int>());
+    look.materials.push_back(std::move(material));
+  }
+}
+
+void check_look(const Source& source, const std::string& path) {
+  const Appearance& look = source.look;
+  const auto is_as_long = [&](const auto& list) {
+    return list.empty() || list.size() == source.mesh.faces.size();
+  };
+  const auto holds = [](int i, std::size_t size) { return i >= -1 && i < static_cast<int>(size); };
+  bool is_sound = is_as_long(look.face_material) && is_as_long(look.uvs) && is_as_long(look.colors);
+  for (const int m : look.face_material) is_sound = is_sound && holds(m, look.materials.size());
+  for (const Material& m : look.materials)
+    is_sound = is_sound && holds(m.image, look.images.size());
+  if (!is_sound)
+    throw Error(Stage::kInput, path, "damaged: a building's looks do not fit its faces");
+}
+
 /// A facet without its rings, as stored.
 struct FacetRecord {
   Vec3 normal;
@@ -109,6 +146,25 @@ struct FacetRecord {
 };
 
 }  // namespace
+
+std::string look_json(const Appearance& look) {
+  Json images = Json::array(), materials = Json::array();
+  for (const ImagePlace& i : look.images)
+    images.push_back({{"path", i.path},
+                      {"offset", i.offset},
+                      {"length", i.length},
+                      {"is_base64", i.is_base64},
+                      {"skip", i.skip},
+                      {"take", i.take}});
+  for (const Material& m : look.materials)
+    materials.push_back({{"name", m.name},
+                         {"color", m.color},
+                         {"image", m.image},
+                         {"wrap_u", static_cast<int>(m.wrap_u)},
+                         {"wrap_v", static_cast<int>(m.wrap_v)}});
+  return Json{{"images", images}, {"materials", materials}}.dump(-1, ' ', false,
+                                                                 Json::error_handler_t::replace);
+}
 
 Descriptor read_descriptor(Statement& s) {
   Descriptor d;
@@ -134,7 +190,7 @@ LayerSight read_sight(Statement& s) {
 void Store::Impl::put_building(const Building& b, int order, const std::string& key) const {
   const std::vector<Vec3> box{b.planes.box.min, b.planes.box.max};
   std::vector<std::string> own_warnings = b.warnings;
-  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(order)
       .bind(key)
@@ -157,6 +213,11 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(Json(b.left_out).dump())
       .bind(b.source.given_name)
       .bind(b.solid)
+      .bind(look_json(b.source.look))
+      .bind(b.source.look.face_material)
+      .bind(b.source.look.uvs)
+      .bind_bytes(b.source.look.colors.data(),
+                  b.source.look.colors.size() * sizeof b.source.look.colors[0])
       .run();
 }
 
@@ -253,7 +314,7 @@ void Store::Impl::get_building(Building& b) const {
   Statement s = read(
       "SELECT path, origin_x, origin_y, origin_z, yaw, planes_distance, total_area, box, vertices, "
       "faces, points, normals, plane_of_item, rays, failure, warnings, left_out, given_name, "
-      "solid "
+      "solid, look, face_material, uvs, colors "
       "FROM building "
       "WHERE name = "
       "?1");
@@ -280,6 +341,12 @@ void Store::Impl::get_building(Building& b) const {
   read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
   b.source.given_name = s.text();
   b.solid = s.real();
+  read_json(s.text(), path, "materials", [&](const Json& json) { read_look(json, b.source.look); });
+  b.source.look.face_material = s.array<int>();
+  b.source.look.uvs = s.array<std::array<Vec2f, 3>>();
+  b.source.look.colors = s.array<std::array<Rgb, 3>>();
+  check_look(b.source, path);
+  note_look(b);
   check_place(b.source.mesh.vertices, path);
   check_place(b.source.cloud.points, path);
   if (!b.planes.box.is_empty()) check_place({&b.planes.box.max, 1}, path);

@@ -25,7 +25,7 @@ CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
   rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL,
-  given_name TEXT NOT NULL, solid REAL);
+  given_name TEXT NOT NULL, solid REAL, look TEXT NOT NULL, face_material BLOB, uvs BLOB, colors BLOB);
 CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
@@ -378,6 +378,7 @@ void TemporaryStore::get(Building& b) {
   Building kept = store_.building(b.source.name);
   b.source.mesh = std::move(kept.source.mesh);
   b.source.cloud = std::move(kept.source.cloud);
+  b.source.look = std::move(kept.source.look);
   b.planes = std::move(kept.planes);
 }
 
@@ -389,6 +390,11 @@ std::string segments_key(const Source& source, const Options& options) {
   hash.add(source.mesh.faces);
   hash.add(source.cloud.points);
   hash.add(source.cloud.normals);
+  hash.add(source.look.face_material);
+  hash.add(source.look.uvs);
+  hash.add(source.look.colors);
+  const std::string look = look_json(source.look);
+  hash.add(look.data(), look.size());
   Options relevant = options;  // what only later rooms read does not outdate segments
   const Options defaults;
   relevant.layers = defaults.layers;

@@ -1,0 +1,138 @@
+// Based on: own work.
+#include "looks.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "image/packing.h"
+
+namespace colod {
+
+namespace {
+
+constexpr Rgb kPlain = {231, 231, 231};  // the plain material's 0.8 of light
+constexpr int kBlock = 4;                // texels a side: what a building without texture takes
+constexpr double kFaces = 0.5;           // cosine between a stand-in's side and what it stands for
+
+/// Light times area, and the area.
+using Sum = Eigen::Vector4d;
+
+void add(Sum& sum, const Rgb& rgb, double area) {
+  sum += area * Sum(to_linear(rgb[0]), to_linear(rgb[1]), to_linear(rgb[2]), 1);
+}
+
+Rgb color_of(const Sum& sum) {
+  Rgb rgb = kPlain;
+  for (int k = 0; k < 3 && sum[3] > 0; ++k)
+    rgb[static_cast<std::size_t>(k)] = to_srgb(static_cast<float>(sum[k] / sum[3]));
+  return rgb;
+}
+
+/// Of a box: what its buildings' coarsest levels show to each side, else their mean.
+std::vector<Rgb> side_colors(const TilePart& part, const std::vector<ExportBuilding>& buildings) {
+  std::vector<Sum> sides(part.mesh->facets.size(), Sum::Zero());
+  Sum all = Sum::Zero();
+  for (const int b : part.buildings) {
+    const ExportLevel& level = buildings[static_cast<std::size_t>(b)].levels.front();
+    const Mesh mesh = level.mesh.mesh();
+    for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+      const Vec3 cross = face_cross(mesh, mesh.faces[t]);
+      const auto facet = static_cast<std::size_t>(level.mesh.facet_of_triangle[t]);
+      const Rgb rgb = level.look.facet_colors.empty() ? kPlain : level.look.facet_colors[facet];
+      add(all, rgb, 0.5 * cross.norm());
+      for (std::size_t s = 0; s < sides.size(); ++s)
+        if (part.mesh->facets[s].normal.dot(cross) > kFaces * cross.norm())
+          add(sides[s], rgb, 0.5 * cross.norm());
+    }
+  }
+  std::vector<Rgb> colors;
+  for (const Sum& side : sides) colors.push_back(color_of(side[3] > 0 ? side : all));
+  return colors;
+}
+
+std::vector<Rgb> colors_of(const TilePart& part, const std::vector<ExportBuilding>& buildings) {
+  if (!part.level) return side_colors(part, buildings);
+  if (!part.level->look.facet_colors.empty()) return part.level->look.facet_colors;
+  return std::vector<Rgb>(part.mesh->facets.size(), kPlain);
+}
+
+TileLook colored(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings) {
+  TileLook look;
+  for (const TilePart& part : tile.parts) {
+    look.parts.emplace_back();
+    look.parts.back().facet_colors = colors_of(part, buildings);
+  }
+  look.whole.facet_colors = {kPlain};  // that there are colours
+  return look;
+}
+
+/// A building's image in the tile's, and its coordinates there.
+LevelLook moved(const LevelLook& look, std::size_t triangles, const PackedRect& rect,
+                Raster& whole) {
+  LevelLook out;
+  out.width = whole.width, out.height = whole.height;
+  const Vec2f size(static_cast<float>(whole.width), static_cast<float>(whole.height));
+  const Vec2f corner(static_cast<float>(rect.x), static_cast<float>(rect.y));
+  const Vec2f own(static_cast<float>(rect.width), static_cast<float>(rect.height));
+  const Vec2f middle = (corner + 0.5f * own).cwiseQuotient(size);
+  out.uvs.assign(triangles, {middle, middle, middle});
+  for (std::size_t t = 0; t < look.uvs.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+      out.uvs[t][c] = (corner + look.uvs[t][c].cwiseProduct(own)).cwiseQuotient(size);
+  for (int y = 0; y < rect.height; ++y)
+    for (int x = 0; x < rect.width; ++x)
+      std::memcpy(whole.at(rect.x + x, rect.y + y),
+                  look.uvs.empty() ? kPlain.data() : look.raster.at(x, y), 3);
+  return out;
+}
+
+TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
+                int largest) {
+  std::vector<PackedRect> rects;
+  const LevelLook* first = nullptr;
+  for (const TilePart& part : tile.parts) {
+    const LevelLook& own = part.level->look;
+    rects.push_back(own.has_texture() ? PackedRect{own.width, own.height}
+                                      : PackedRect{kBlock, kBlock});
+    if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, buildings);
+    if (own.has_texture() && !first) first = &own;
+  }
+  const auto [width, height] = pack_rects(rects, largest);
+  if (width == 0) return colored(tile, buildings);
+  TileLook look;
+  Raster whole(width, height);
+  std::fill(whole.rgb.begin(), whole.rgb.end(), kPlain[0]);
+  for (std::size_t i = 0; i < tile.parts.size(); ++i)
+    look.parts.push_back(
+        moved(tile.parts[i].level->look, tile.parts[i].mesh->triangles.size(), rects[i], whole));
+  look.whole.uvs = look.parts.front().uvs;  // that there is a texture
+  look.whole.image = encode_image(whole, first->format, first->quality);
+  look.whole.format = first->format;
+  return look;
+}
+
+}  // namespace
+
+TileLook look_of(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
+                 int largest) {
+  const auto any = [&](auto&& holds) {
+    return std::any_of(tile.parts.begin(), tile.parts.end(), [&](const TilePart& part) {
+      return std::any_of(part.buildings.begin(), part.buildings.end(), [&](int b) {
+        const ExportBuilding& building = buildings[static_cast<std::size_t>(b)];
+        return holds(part.level ? part.level->look : building.levels.front().look, part);
+      });
+    });
+  };
+  const bool has_texture = any(
+      [](const LevelLook& look, const TilePart& part) { return part.level && look.has_texture(); });
+  const bool has_colors = any([](const LevelLook& look, const TilePart&) {
+    return look.has_texture() || !look.facet_colors.empty();
+  });
+  if (has_texture && tile.parts.size() == 1)
+    return {{tile.parts[0].level->look}, tile.parts[0].level->look};
+  if (has_texture) return shared(tile, buildings, largest);
+  if (has_colors) return colored(tile, buildings);
+  return {std::vector<LevelLook>(tile.parts.size()), {}};
+}
+
+}  // namespace colod

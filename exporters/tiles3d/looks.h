@@ -1,0 +1,19 @@
+// How a tile looks: the levels of a group share one atlas, stand-ins wear the mean colours of their
+// sides.
+#pragma once
+
+#include "tree.h"
+
+namespace colod {
+
+struct TileLook {
+  std::vector<LevelLook> parts;  ///< per part of the tile, coordinates in the tile's own image
+  LevelLook whole;               ///< the image or the colours that all of them share; or nothing
+};
+
+/// Buildings without appearance are grey beside others. Where the atlases of a group do not fit
+/// into one of `largest` texels a side, its facets have one colour each.
+TileLook look_of(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
+                 int largest);
+
+}  // namespace colod

@@ -1,0 +1,370 @@
+// Based on: texture atlases of planar charts; Gortler et al. (fill.cpp).
+// Differs: facets are planar, so charts need no parametrization; each texel asks the source itself.
+// Notation: q: a place on a chart, metres from its upper left corner; texels of the atlas are
+// pixels.
+#include "bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "charts.h"
+#include "core/error.h"
+#include "core/flat.h"
+#include "core/parallel.h"
+#include "core/spread.h"
+#include "fill.h"
+#include "parameters.h"
+#include "probe.h"
+#include "sampler.h"
+
+namespace colod {
+
+using namespace bake;
+using namespace parameters::bake;
+
+namespace {
+
+constexpr int kSquare = 64;                // texels a side that one task draws
+constexpr double kColorSampleArea = 0.25;  // m² of a facet that a sample stands for
+constexpr int kMostColorSamples = 256;
+
+/// How often texels were found in which way, and the sum of their light.
+struct Tally {
+  std::int64_t seen = 0, nearest = 0, missing = 0;
+  Eigen::Vector3d light = Eigen::Vector3d::Zero();
+
+  std::int64_t found() const { return seen + nearest; }
+  std::int64_t all() const { return seen + nearest + missing; }
+  void add(const Tally& t) {
+    seen += t.seen, nearest += t.nearest, missing += t.missing, light += t.light;
+  }
+};
+
+/// A triangle of a chart on the chart's plane, counter-clockwise.
+struct Corners {
+  std::array<Vec2, 3> at;
+
+  bool holds(const Vec2& q) const {
+    for (int k = 0; k < 3; ++k)
+      if (cross(at[(k + 1) % 3] - at[k], q - at[k]) < 0) return false;
+    return true;
+  }
+  Vec2 nearest(const Vec2& q) const {
+    if (holds(q)) return q;
+    Vec2 best = at[0];
+    double least = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 along = at[(k + 1) % 3] - at[k];
+      const double square = along.squaredNorm();
+      const double t = square > 0 ? std::clamp((q - at[k]).dot(along) / square, 0.0, 1.0) : 0;
+      const Vec2 p = at[k] + t * along;
+      if ((p - q).squaredNorm() < least) least = (p - q).squaredNorm(), best = p;
+    }
+    return best;
+  }
+};
+
+/// A square of texels of a chart; windows are of the atlas.
+struct Task {
+  int chart;
+  Window window;
+};
+
+std::uint8_t* put(std::uint8_t* pixel, const Light& light) {
+  for (int c = 0; c < 3; ++c) pixel[c] = to_srgb(light[c]);
+  return pixel;
+}
+
+/// Draws one layer's atlas.
+class Painter {
+ public:
+  Painter(const Probe& probe, const Sampler& sampler, const ImageCache& cache,
+          const PolygonMesh& mesh, const BakeOptions& options)
+      : probe_(probe), sampler_(sampler), cache_(cache), mesh_(mesh), reach_(options.reach) {
+    charts_ = find_charts(mesh);
+    atlas_ = pack_charts(charts_, std::max(options.texel, sampler.texel()), options.largest);
+    if (atlas_.width == 0)
+      throw Error(Stage::kProcess, "texture",
+                  std::to_string(charts_.size()) + " facets do not fit into " +
+                      std::to_string(options.largest) + " texels: more --texture-size");
+    const double ratio = atlas_.texel / std::max(sampler.texel(), 1e-9);
+    samples_ = ratio <= kOneSample
+                   ? 1
+                   : std::clamp(static_cast<int>(std::ceil(ratio / kMostLevel)), 2, kMostSamples);
+  }
+
+  BakedTexture paint() {
+    BakedTexture out;
+    out.image = Raster(atlas_.width, atlas_.height);
+    is_known_.assign(out.image.rgb.size() / 3, 0);
+    const std::vector<Task> tasks = list_tasks();
+    std::vector<Tally> tallies(tasks.size());
+    parallel_for(tasks.size(), [&](std::size_t i) { draw(tasks[i], out.image, tallies[i]); });
+    std::vector<Tally> of_chart(charts_.size());
+    Tally total;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      of_chart[static_cast<std::size_t>(tasks[i].chart)].add(tallies[i]);
+      total.add(tallies[i]);
+    }
+    fill(of_chart, total, out.image);
+    out.facts = facts(of_chart, total);
+    out.uvs = coordinates();
+    return out;
+  }
+
+ private:
+  std::vector<Task> list_tasks() const {
+    std::vector<Task> tasks;
+    for (std::size_t c = 0; c < charts_.size(); ++c) {
+      const PackedRect& r = atlas_.rects[c];
+      for (int y = 0; y < r.height; y += kSquare)
+        for (int x = 0; x < r.width; x += kSquare)
+          tasks.push_back({static_cast<int>(c),
+                           {r.x + x, r.y + y, std::min(kSquare, r.width - x),
+                            std::min(kSquare, r.height - y)}});
+    }
+    return tasks;
+  }
+
+  Vec2 to_texels(std::size_t chart, const Vec2& q) const {
+    const PackedRect& r = atlas_.rects[chart];
+    return q / atlas_.texel + Vec2(r.x + kGutter, r.y + kGutter);
+  }
+
+  /// The chart's triangles that come near a window, in texels.
+  std::vector<Corners> triangles_near(const Task& task) const {
+    const auto chart = static_cast<std::size_t>(task.chart);
+    const Window& w = task.window;
+    std::vector<Corners> near;
+    for (const int t : charts_[chart].triangles) {
+      Corners c;
+      Vec2 least = Vec2::Constant(INFINITY), most = Vec2::Constant(-INFINITY);
+      for (int k = 0; k < 3; ++k) {
+        c.at[k] = to_texels(chart, charts_[chart].flat(mesh_.vertices[mesh_.triangles[t][k]]));
+        least = least.cwiseMin(c.at[k]), most = most.cwiseMax(c.at[k]);
+      }
+      if (cross(c.at[1] - c.at[0], c.at[2] - c.at[0]) < 0) std::swap(c.at[1], c.at[2]);
+      if (most.x() < w.x - kBorder || most.y() < w.y - kBorder ||
+          least.x() > w.x + w.width + kBorder || least.y() > w.y + w.height + kBorder)
+        continue;
+      near.push_back(c);
+    }
+    return near;
+  }
+
+  /// Per texel of a window the nearest of the triangles; −1: none within the border.
+  static std::vector<int> owners(const Window& w, const std::vector<Corners>& triangles) {
+    std::vector<int> owner(static_cast<std::size_t>(w.width) * w.height, -1);
+    std::vector<double> distance(owner.size(), kBorder);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto& at = triangles[t].at;
+      const Vec2 least = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
+      const Vec2 most = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
+      const auto from = [](double v, int begin, int n) {
+        return std::clamp(static_cast<int>(std::floor(v)) - begin, 0, n);
+      };
+      const int x0 = from(least.x() - kBorder, w.x, w.width);
+      const int x1 = from(most.x() + kBorder + 1, w.x, w.width);
+      const int y0 = from(least.y() - kBorder, w.y, w.height);
+      const int y1 = from(most.y() + kBorder + 1, w.y, w.height);
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+          const std::size_t i = static_cast<std::size_t>(y) * w.width + x;
+          if (distance[i] <= 0) continue;
+          const Vec2 middle(w.x + x + 0.5, w.y + y + 0.5);
+          const double d = (triangles[t].nearest(middle) - middle).norm();
+          if (d < distance[i]) distance[i] = d, owner[i] = static_cast<int>(t);
+        }
+    }
+    return owner;
+  }
+
+  void draw(const Task& task, Raster& image, Tally& tally) {
+    const Window& w = task.window;
+    const std::vector<Corners> triangles = triangles_near(task);
+    const std::vector<int> owner = owners(w, triangles);
+    Lens lens(cache_);
+    for (int y = 0; y < w.height; ++y)
+      for (int x = 0; x < w.width; ++x) {
+        const int own = owner[static_cast<std::size_t>(y) * w.width + x];
+        if (own < 0) continue;
+        const Vec2 corner(w.x + x, w.y + y);
+        const bool is_inside =
+            triangles[static_cast<std::size_t>(own)].holds(corner + Vec2::Constant(0.5));
+        Light light = Light::Zero();
+        const Finding how = look(task.chart, corner, triangles, own, lens, light);
+        if (how != Finding::kNone) {
+          put(image.at(w.x + x, w.y + y), light);
+          is_known_[static_cast<std::size_t>(w.y + y) * image.width + w.x + x] = 1;
+        }
+        if (!is_inside) continue;
+        (how == Finding::kSeen      ? tally.seen
+         : how == Finding::kNearest ? tally.nearest
+                                    : tally.missing) += 1;
+        tally.light += light.cast<double>();
+      }
+  }
+
+  /// The mean of a texel's samples; each lies on the chart.
+  Finding look(int number, const Vec2& corner, const std::vector<Corners>& triangles, int own,
+               Lens& lens, Light& mean) const {
+    const auto chart = static_cast<std::size_t>(number);
+    const PackedRect& rect = atlas_.rects[chart];
+    const Vec2 begin(rect.x + kGutter, rect.y + kGutter);
+    int found = 0, seen = 0;
+    for (int j = 0; j < samples_; ++j)
+      for (int i = 0; i < samples_; ++i) {
+        Vec2 at = corner + Vec2(i + 0.5, j + 0.5) / samples_;
+        if (!triangles[static_cast<std::size_t>(own)].holds(at) &&
+            std::none_of(triangles.begin(), triangles.end(),
+                         [&](const Corners& t) { return t.holds(at); }))
+          at = triangles[static_cast<std::size_t>(own)].nearest(at);
+        const Found place = probe_.find(charts_[chart].lift((at - begin) * atlas_.texel),
+                                        charts_[chart].normal, reach_);
+        if (place.how == Finding::kNone) continue;
+        mean += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
+        ++found, seen += place.how == Finding::kSeen;
+      }
+    if (found == 0) return Finding::kNone;
+    mean /= static_cast<float>(found);
+    return 2 * seen >= found ? Finding::kSeen : Finding::kNearest;
+  }
+
+  static bool is_hardly_seen(const Tally& t) {
+    return static_cast<double>(t.found()) < kLeastSeen * static_cast<double>(t.all());
+  }
+
+  void fill(const std::vector<Tally>& of_chart, const Tally& total, Raster& image) {
+    const Light mean = total.found() > 0
+                           ? Light((total.light / static_cast<double>(total.found())).cast<float>())
+                           : Light(Light::Constant(0.5f));
+    parallel_for(charts_.size(), [&](std::size_t c) {
+      const PackedRect& r = atlas_.rects[c];
+      const Window window{r.x, r.y, r.width, r.height};
+      if (!is_hardly_seen(of_chart[c])) return push_pull(image, is_known_, window);
+      for (int y = r.y; y < r.y + r.height; ++y)
+        for (int x = r.x; x < r.x + r.width; ++x) put(image.at(x, y), mean);
+    });
+    std::vector<std::uint8_t> is_taken(is_known_.size(), 0);
+    for (const PackedRect& r : atlas_.rects)
+      for (int y = r.y; y < r.y + r.height; ++y)
+        std::fill_n(&is_taken[static_cast<std::size_t>(y) * atlas_.width + r.x], r.width, 1);
+    for (std::size_t i = 0; i < is_taken.size(); ++i)
+      if (!is_taken[i]) put(&image.rgb[3 * i], mean);
+  }
+
+  BakeFacts facts(const std::vector<Tally>& of_chart, const Tally& total) const {
+    BakeFacts f{atlas_.width, atlas_.height, atlas_.texel, static_cast<int>(charts_.size())};
+    Tally kept;
+    std::int64_t unseen = 0;
+    for (const Tally& t : of_chart)
+      if (is_hardly_seen(t))
+        unseen += t.all();
+      else
+        kept.add(t);
+    const double all = static_cast<double>(std::max<std::int64_t>(1, total.all()));
+    f.seen = static_cast<double>(kept.seen) / all;
+    f.nearest = static_cast<double>(kept.nearest) / all;
+    f.filled = static_cast<double>(kept.missing) / all;
+    f.unseen = static_cast<double>(unseen) / all;
+    return f;
+  }
+
+  std::vector<std::array<Vec2f, 3>> coordinates() const {
+    std::vector<std::array<Vec2f, 3>> uvs(mesh_.triangles.size());
+    const Vec2 size(atlas_.width, atlas_.height);
+    for (std::size_t c = 0; c < charts_.size(); ++c)
+      for (const int t : charts_[c].triangles)
+        for (int k = 0; k < 3; ++k)
+          uvs[static_cast<std::size_t>(t)][k] =
+              to_texels(c, charts_[c].flat(mesh_.vertices[mesh_.triangles[t][k]]))
+                  .cwiseQuotient(size)
+                  .cast<float>();
+    return uvs;
+  }
+
+  const Probe& probe_;
+  const Sampler& sampler_;
+  const ImageCache& cache_;
+  const PolygonMesh& mesh_;
+  double reach_;
+  int samples_ = 1;  // along each side of a texel
+  std::vector<Chart> charts_;
+  Atlas atlas_;
+  std::vector<std::uint8_t> is_known_;  // per texel: a sample gave it a colour
+};
+
+}  // namespace
+
+struct Baker::Impl {
+  Sampler sampler;
+  Probe probe;
+  const ImageCache& cache;
+
+  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images)
+      : sampler(mesh, look, images), probe(mesh), cache(images) {}
+};
+
+Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache)
+    : impl_(std::make_unique<Impl>(source, look, cache)) {}
+Baker::~Baker() = default;
+
+const std::vector<std::string>& Baker::warnings() const { return impl_->sampler.warnings(); }
+double Baker::source_texel() const { return impl_->sampler.texel(); }
+
+BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) const {
+  return Painter(impl_->probe, impl_->sampler, impl_->cache, mesh, options).paint();
+}
+
+namespace {
+
+/// Light times area, and the area that was found.
+using Sum = Eigen::Vector4d;
+
+/// What is seen of a triangle, by samples spread over it.
+Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const Sampler& sampler,
+            const ImageCache& cache, double reach) {
+  const Vec3 turn = face_cross(mesh, f);
+  const double area = 0.5 * turn.norm();
+  Sum sum = Sum::Zero();
+  if (!(area > 0)) return sum;
+  const int n = std::clamp(static_cast<int>(area / kColorSampleArea), 4, kMostColorSamples);
+  Lens lens(cache);
+  for (int k = 1; k <= n; ++k) {
+    const Vec3 p =
+        spread_on_triangle(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], k);
+    const Found found = probe.find(p, turn.normalized(), reach);
+    if (found.how == Finding::kNone) continue;
+    const Light light = sampler.sample(found.face, found.point, std::sqrt(kColorSampleArea), lens);
+    sum += area / n * Sum(light[0], light[1], light[2], 1);
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Rgb> Baker::facet_colors(const PolygonMesh& mesh, double reach) const {
+  const Mesh plain = mesh.mesh();
+  std::vector<Sum> of_triangle(mesh.triangles.size());
+  parallel_for(of_triangle.size(), [&](std::size_t t) {
+    of_triangle[t] =
+        look_at(plain, mesh.triangles[t], impl_->probe, impl_->sampler, impl_->cache, reach);
+  });
+  std::vector<Sum> sums(mesh.facets.size(), Sum::Zero());
+  Sum all = Sum::Zero();
+  for (std::size_t t = 0; t < of_triangle.size(); ++t) {
+    sums[static_cast<std::size_t>(mesh.facet_of_triangle[t])] += of_triangle[t];
+    all += of_triangle[t];
+  }
+  std::vector<Rgb> colors;
+  for (const Sum& s : sums) {
+    const Sum& used = s[3] > 0 ? s : all;
+    Rgb rgb = {128, 128, 128};
+    for (int c = 0; c < 3 && used[3] > 0; ++c)
+      rgb[static_cast<std::size_t>(c)] = to_srgb(static_cast<float>(used[c] / used[3]));
+    colors.push_back(rgb);
+  }
+  return colors;
+}
+
+}  // namespace colod

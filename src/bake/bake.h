@@ -1,0 +1,69 @@
+// A source's appearance and a layer's mesh → the layer's own texture, at the size of the pixels
+// that it is seen at.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "image/image.h"
+
+namespace colod {
+
+class ImageCache;
+
+struct BakeOptions {
+  double texel = 0;    ///< metres a side; 0: as fine as the source, which it never falls below
+  int largest = 4096;  ///< texels a side of the atlas
+  double reach = 0.5;  ///< metres, along a facet's normal and about it, within which the source is
+                       ///< looked for
+};
+
+/// What a texture is, and where its texels come from.
+struct BakeFacts {
+  int width = 0, height = 0;  ///< texels
+  double texel = 0;           ///< metres a side; more than asked where the atlas would not fit
+  int charts = 0;
+  /// Shares of the texels on the surface, 0..1, together 1: seen along the normal; by the nearest
+  /// point; filled from neighbours; no part of the source near them, so a mean stands for them.
+  double seen = 0, nearest = 0, filled = 0, unseen = 0;
+};
+
+struct BakedTexture {
+  Raster image;
+  std::vector<std::array<Vec2f, 3>>
+      uvs;  ///< per triangle of the mesh; 0,0 is the upper left corner
+  BakeFacts facts;
+};
+
+/// One building's source, ready to be looked at. Keeps references to what it is given.
+class Baker {
+ public:
+  /// Reads all images once.
+  Baker(const Mesh& source, const Appearance& look, const ImageCache& cache);
+  ~Baker();
+
+  /// Charts are facets, those in one plane that share edges together; each is turned to its
+  /// smallest rectangle and drawn at one scale, without distortion. A texel shows what the nearest
+  /// surface along the facet's normal shows whose normal agrees, else the nearest point; the mean
+  /// of several samples, in linear light, of the source's mip level that fits. What is left is
+  /// filled from its neighbours, a facet of which nothing is seen with the mean of the building.
+  /// `mesh` is in the source's coordinates, its vertices shared between facets. Deterministic, runs
+  /// in parallel. Throws Error{kStage} where `largest` is too small for the number of charts.
+  BakedTexture bake(const PolygonMesh& mesh, const BakeOptions& options) const;
+
+  /// One colour a facet: the mean of what is seen of it.
+  std::vector<Rgb> facet_colors(const PolygonMesh& mesh, double reach) const;
+
+  /// One line for each image with a fault, naming its file.
+  const std::vector<std::string>& warnings() const;
+  /// Metres, of the source's own texels.
+  double source_texel() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace colod

@@ -1,0 +1,36 @@
+// Inside room `bake` only: facets as rectangles, and rectangles in an atlas.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry.h"
+#include "image/packing.h"
+
+namespace colod::bake {
+
+/// A facet, or several in one plane that share edges, turned so that its rectangle is the smallest.
+struct Chart {
+  std::vector<int> triangles;
+  Vec3 origin = Vec3::Zero();  ///< of the rectangle's upper left corner, seen from outside
+  Vec3 right = Vec3::UnitX(), down = Vec3::UnitY();  ///< unit, in the plane
+  Vec3 normal = Vec3::UnitZ();                       ///< unit, outward
+  double width = 0, height = 0;                      ///< metres along right and down; width no less
+
+  Vec2 flat(const Vec3& p) const { return {(p - origin).dot(right), (p - origin).dot(down)}; }
+  Vec3 lift(const Vec2& q) const { return origin + q.x() * right + q.y() * down; }
+};
+
+/// By their first triangles.
+std::vector<Chart> find_charts(const PolygonMesh& mesh);
+
+/// Where charts lie; sides are multiples of 4.
+struct Atlas {
+  int width = 0, height = 0;
+  double texel = 0;               ///< metres: as asked, or larger where the atlas would not fit
+  std::vector<PackedRect> rects;  ///< per chart, with its gutters
+};
+
+/// The smallest atlas found whose sides are at most `largest`.
+Atlas pack_charts(const std::vector<Chart>& charts, double texel, int largest);
+
+}  // namespace colod::bake

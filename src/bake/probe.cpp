@@ -1,0 +1,47 @@
+// Based on: projection along the normal, as normal maps are baked.
+// Differs: the nearest surface that agrees wins, whether it lies before the facet or behind it.
+#include "probe.h"
+
+#include <algorithm>
+
+#include "parameters.h"
+
+namespace colod::bake {
+
+using namespace parameters::bake;
+
+Probe::Probe(const Mesh& mesh) : rays_(mesh) {
+  for (const Face& f : mesh.faces) {
+    const Vec3 cross = face_cross(mesh, f);
+    normals_.push_back(cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(Vec3::Zero()));
+  }
+}
+
+RayHit Probe::first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal,
+                             double reach) const {
+  double begin = 0;
+  for (int layer = 0; layer < kMostLayers && begin < reach; ++layer) {
+    const RayHit hit = rays_.first_hit(from, direction, begin, reach);
+    if (!hit || normals_[static_cast<std::size_t>(hit.triangle)].dot(normal) > kAgrees) return hit;
+    begin = hit.distance + kLift;
+  }
+  return {};
+}
+
+Found Probe::find(const Vec3& p, const Vec3& normal, double reach) const {
+  // Each ray begins a little before the facet, so that a surface in its plane is met.
+  const RayHit out = first_agreeing(p - kLift * normal, normal, normal, reach + kLift);
+  const double known = out ? std::abs(out.distance - kLift) : reach;
+  const RayHit in = first_agreeing(p + kLift * normal, -normal, normal, known + kLift);
+  if (in && std::abs(in.distance - kLift) <= known)
+    return {Finding::kSeen, in.triangle, p - (in.distance - kLift) * normal};
+  if (out) return {Finding::kSeen, out.triangle, p + (out.distance - kLift) * normal};
+  const double about = std::min(reach, kNearest);
+  const NearestPoint near = rays_.nearest(p, about);
+  if (near.triangle >= 0 && near.distance <= about &&
+      normals_[static_cast<std::size_t>(near.triangle)].dot(normal) > kAgrees)
+    return {Finding::kNearest, near.triangle, near.point};
+  return {};
+}
+
+}  // namespace colod::bake

@@ -1,0 +1,33 @@
+// Inside room `bake` only: which place of the source a place of a layer shows.
+#pragma once
+
+#include <optional>
+
+#include "core/rays.h"
+#include "sampler.h"
+
+namespace colod::bake {
+
+enum class Finding : std::uint8_t { kNone, kSeen, kNearest };
+
+struct Found {
+  Finding how = Finding::kNone;
+  int face = -1;
+  Vec3 point = Vec3::Zero();
+};
+
+class Probe {
+ public:
+  explicit Probe(const Mesh& mesh);
+  Found find(const Vec3& p, const Vec3& normal, double reach) const;
+
+ private:
+  /// The first surface along a ray whose normal agrees with `normal`; at most `reach` away.
+  RayHit first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal,
+                        double reach) const;
+
+  RayScene rays_;
+  std::vector<Vec3> normals_;  // unit, per face; zero without area
+};
+
+}  // namespace colod::bake

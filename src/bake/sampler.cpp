@@ -1,0 +1,130 @@
+// Based on: Williams, Pyramidal parametrics, SIGGRAPH 1983 (trilinear).
+// Differs: one level for both directions, by area; all sums in linear light.
+#include "sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "parameters.h"
+
+namespace colod::bake {
+
+namespace {
+
+using namespace parameters::bake;
+
+int wrapped(int i, int n, Wrap wrap) {
+  if (wrap == Wrap::kClamp) return std::clamp(i, 0, n - 1);
+  const int period = wrap == Wrap::kMirror ? 2 * n : n;
+  i %= period;
+  if (i < 0) i += period;
+  return i < n ? i : period - 1 - i;
+}
+
+/// Coordinates far outside keep their place within a period.
+double within_period(double u, Wrap wrap) {
+  if (wrap == Wrap::kClamp) return std::clamp(u, -1.0, 2.0);
+  return u - 2 * std::floor(u / 2);
+}
+
+Light bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
+  const double x = within_period(uv.x(), m.wrap_u) * raster.width - 0.5;
+  const double y = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
+  Light sum = Light::Zero();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const std::uint8_t* p = raster.at(wrapped(x0 + i, raster.width, m.wrap_u),
+                                        wrapped(y0 + j, raster.height, m.wrap_v));
+      const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+      sum += weight * Light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+    }
+  return sum;
+}
+
+Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Material& m) {
+  const double last = static_cast<double>(pyramid.levels.size()) - 1;
+  level = std::clamp(level, 0.0, last);
+  const auto fine = static_cast<std::size_t>(level);
+  const auto share = static_cast<float>(level - static_cast<double>(fine));
+  const Light a = bilinear(pyramid.levels[fine], uv, m);
+  if (share < 1e-3f) return a;
+  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m);
+}
+
+}  // namespace
+
+const Pyramid* Lens::look(const ImagePlace& place, int number) {
+  if (held_[0].number == number) return held_[0].pyramid.get();
+  std::swap(held_[0], held_[1]);
+  if (held_[0].number != number) held_[0] = {number, cache_.get(place).pyramid};
+  return held_[0].pyramid.get();
+}
+
+Sampler::Sampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
+    : mesh_(mesh), look_(look), cache_(cache), texel_of_face_(mesh.faces.size(), 0) {
+  std::vector<std::array<int, 2>> sizes;
+  for (const ImagePlace& place : look.images) {
+    const ImageCache::Facts facts = cache.facts(place);
+    sizes.push_back({facts.width, facts.height});
+    if (!facts.problem.empty())
+      warnings_.push_back("texture '" + std::filesystem::path(place.path).filename().string() +
+                          "' " + facts.problem +
+                          (facts.width == 0 ? ": its material's colour stands for it" : ""));
+  }
+  double area = 0, texels = 0, plain_area = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const double own = face_area(mesh, mesh.faces[f]);
+    plain_area += own;
+    const int material = look.face_material.empty() ? -1 : look.face_material[f];
+    const int image = material < 0 ? -1 : look.materials[static_cast<std::size_t>(material)].image;
+    if (image < 0 || sizes[static_cast<std::size_t>(image)][0] == 0 || look.uvs.empty()) continue;
+    const auto& size = sizes[static_cast<std::size_t>(image)];
+    const auto& uv = look.uvs[f];
+    const Eigen::Vector2d a = (uv[1] - uv[0]).cast<double>(), b = (uv[2] - uv[0]).cast<double>();
+    const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size[0] * size[1];
+    if (!(covered > 0) || !std::isfinite(covered) || !(own > 0)) continue;
+    texel_of_face_[f] = static_cast<float>(std::sqrt(own / covered));
+    area += own, texels += covered;
+  }
+  if (texels > 0)
+    texel_ = std::sqrt(area / texels);
+  else if (!mesh.faces.empty())
+    texel_ = std::sqrt(plain_area / static_cast<double>(mesh.faces.size()));
+}
+
+Light Sampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
+  const auto f = static_cast<std::size_t>(face);
+  Light light = Light::Ones();
+  const Vec3 weight = barycentric(mesh_, mesh_.faces[f], point);
+  if (!look_.colors.empty()) {
+    light.setZero();
+    for (int c = 0; c < 3; ++c) {
+      const Rgb& rgb = look_.colors[f][static_cast<std::size_t>(c)];
+      light += static_cast<float>(std::clamp(weight[c], 0.0, 1.0)) *
+               Light(to_linear(rgb[0]), to_linear(rgb[1]), to_linear(rgb[2]));
+    }
+  }
+  const int number = look_.face_material.empty() ? -1 : look_.face_material[f];
+  if (number < 0) return light;
+  const Material& m = look_.materials[static_cast<std::size_t>(number)];
+  light = light.cwiseProduct(Light(m.color[0], m.color[1], m.color[2]));
+  const Pyramid* pyramid =
+      m.image < 0 ? nullptr : lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
+  if (!pyramid) return light;
+  Vec2 uv(NAN, NAN);
+  if (!look_.uvs.empty())
+    uv = weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
+         weight[2] * look_.uvs[f][2].cast<double>();
+  if (!(uv.cwiseAbs().maxCoeff() < 1e6)) {  // also NaN: the image's mean stands for it
+    const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
+    return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));
+  }
+  const double own = texel_of_face_[f] > 0 ? texel_of_face_[f] : spacing;
+  return light.cwiseProduct(
+      trilinear(*pyramid, uv, std::min(std::log2(spacing / own), std::log2(kMostLevel)), m));
+}
+
+}  // namespace colod::bake

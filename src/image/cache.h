@@ -1,0 +1,45 @@
+// Images as they are sampled: decoded when they are needed, each with its mip chain, and let go of
+// when others need the room.
+#pragma once
+
+#include <memory>
+
+#include "image.h"
+
+namespace colod {
+
+/// Level 0 is the image; each further one half as wide and high, averaged in linear light, down to
+/// one pixel.
+struct Pyramid {
+  std::vector<Raster> levels;
+};
+
+class ImageCache {
+ public:
+  struct Entry {
+    std::shared_ptr<const Pyramid> pyramid;  ///< null: it cannot be read
+    std::string problem;  ///< why not, or what is wrong with it; one line; empty: nothing
+  };
+
+  /// `budget`: bytes that decoded images may take together, those in use included.
+  explicit ImageCache(std::size_t budget);
+  ~ImageCache();
+  ImageCache(ImageCache&&) noexcept;
+
+  /// Decodes it where it is not there. What is held by others stays in memory beyond the budget
+  /// until they let go. Thread-safe.
+  Entry get(const ImagePlace& place) const;
+  /// Width and height in pixels, 0 where it cannot be read, and what is wrong with it. Decodes it
+  /// where nobody asked for it before.
+  struct Facts {
+    int width = 0, height = 0;
+    std::string problem;
+  };
+  Facts facts(const ImagePlace& place) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace colod

@@ -1,0 +1,21 @@
+// Inside room `image` only: one pair of functions a format.
+#pragma once
+
+#include <stdexcept>
+
+#include "image.h"
+
+namespace colod::codecs {
+
+/// Throws std::runtime_error where so many pixels, with a mip chain, are more than allowed.
+void check_size(std::size_t width, std::size_t height, std::size_t most_bytes);
+
+DecodedImage decode_jpeg(std::string_view bytes, std::size_t most_bytes);
+DecodedImage decode_png(std::string_view bytes, std::size_t most_bytes);
+DecodedImage decode_webp(std::string_view bytes, std::size_t most_bytes);
+
+std::string encode_jpeg(const Raster& raster, int quality);
+std::string encode_png(const Raster& raster);
+std::string encode_webp(const Raster& raster, int quality);
+
+}  // namespace colod::codecs

@@ -1,0 +1,49 @@
+// Encoded images ↔ pixels.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/appearance.h"
+
+namespace colod {
+
+/// Pixels, sRGB, row by row from the top.
+struct Raster {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< 3 a pixel
+
+  Raster() = default;
+  Raster(int w, int h)
+      : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+  std::uint8_t* at(int x, int y) { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+  const std::uint8_t* at(int x, int y) const {
+    return &rgb[3 * (static_cast<std::size_t>(y) * width + x)];
+  }
+};
+
+enum class ImageFormat { kJpeg, kWebp, kPng };
+
+/// "image/jpeg" …
+const char* mime_of(ImageFormat format);
+/// "jpg" …
+const char* extension_of(ImageFormat format);
+
+struct DecodedImage {
+  Raster raster;
+  std::string remark;  ///< what is wrong with it though it could be read; empty: nothing
+};
+
+/// JPEG (also progressive, grey, CMYK), PNG (of any kind; transparency is left out) or WebP. Throws
+/// std::runtime_error with the cause, also where its pixels take more than `most_bytes`, which is
+/// known before any of them is decoded. Thread-safe.
+DecodedImage decode_image(std::string_view bytes, std::size_t most_bytes);
+
+/// `quality` 1..100, of JPEG and WebP. The same pixels give the same bytes. Throws
+/// std::runtime_error. Thread-safe.
+std::string encode_image(const Raster& raster, ImageFormat format, int quality);
+
+}  // namespace colod

@@ -1,0 +1,216 @@
+// Based on: glTF 2.0 (materials, textures, samplers, images), KHR_texture_transform,
+// EXT_texture_webp, KHR_texture_basisu, KHR_materials_pbrSpecularGlossiness.
+// Differs: of a material its base colour alone is read.
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "formats.h"
+#include "gltf.h"
+#include "look.h"
+
+namespace colod::mesh_io {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A member where it is there and of the right kind, else an empty object or list.
+const Json& member(const Json& json, const char* key, Json::value_t kind = Json::value_t::object) {
+  static const Json none_object = Json::object(), none_list = Json::array();
+  if (json.is_object() && json.contains(key) && json[key].type() == kind) return json[key];
+  return kind == Json::value_t::array ? none_list : none_object;
+}
+
+int index(const Json& json, const char* key, int none = -1) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return none;
+  const double value = json[key].get<double>();
+  return value >= 0 && value < 1e9 ? static_cast<int>(value) : none;
+}
+
+double number(const Json& list, std::size_t i, double none) {
+  return list.is_array() && i < list.size() && list[i].is_number() ? list[i].get<double>() : none;
+}
+
+std::string percent_decoded(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const auto digit = [&](std::size_t at) {
+      const char c = at < uri.size() ? uri[at] : 'x';
+      return c >= '0' && c <= '9'   ? c - '0'
+             : c >= 'a' && c <= 'f' ? c - 'a' + 10
+             : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                    : -1;
+    };
+    if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
+      out += static_cast<char>(16 * digit(i + 1) + digit(i + 2));
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
+class LookReader {
+ public:
+  LookReader(const std::string& path, std::string_view bytes, std::size_t binary, const Json& json,
+             std::vector<std::string>& warnings)
+      : path_(path), bytes_(bytes), binary_(binary), json_(json), warnings_(warnings) {}
+
+  GltfLook read() {
+    for (const Json& m : member(json_, "materials", Json::value_t::array)) add_material(m);
+    return std::move(look_);
+  }
+
+ private:
+  void add_material(const Json& json) {
+    look_.materials.emplace_back();
+    GltfMaterial& m = look_.materials.back();
+    if (json.is_object() && json.contains("name") && json["name"].is_string())
+      m.material.name = json["name"].get<std::string>();
+    const Json& old = member(member(json, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    const Json& base = old.empty() ? member(json, "pbrMetallicRoughness") : old;
+    const Json& factor =
+        member(base, old.empty() ? "baseColorFactor" : "diffuseFactor", Json::value_t::array);
+    for (std::size_t k = 0; k < 3; ++k)
+      m.material.color[k] = static_cast<float>(std::clamp(number(factor, k, 1), 0.0, 1.0));
+    const Json& texture = member(base, old.empty() ? "baseColorTexture" : "diffuseTexture");
+    if (!texture.empty()) set_texture(texture, m);
+  }
+
+  void set_texture(const Json& info, GltfMaterial& m) {
+    m.uv_set = index(info, "texCoord", 0);
+    const Json& transform = member(member(info, "extensions"), "KHR_texture_transform");
+    if (!transform.empty()) {
+      m.uv_set = index(transform, "texCoord", m.uv_set);
+      const Json& offset = member(transform, "offset", Json::value_t::array);
+      const Json& scale = member(transform, "scale", Json::value_t::array);
+      const double turn = transform.contains("rotation") && transform["rotation"].is_number()
+                              ? transform["rotation"].get<double>()
+                              : 0;
+      const double c = std::cos(turn), s = std::sin(turn);
+      const double sx = number(scale, 0, 1), sy = number(scale, 1, 1);
+      m.place << c * sx, s * sy, number(offset, 0, 0), -s * sx, c * sy, number(offset, 1, 0);
+    }
+    const Json& textures = member(json_, "textures", Json::value_t::array);
+    const int i = index(info, "index");
+    if (i < 0 || i >= static_cast<int>(textures.size()))
+      return warn("names texture " + std::to_string(i) + ", which it does not hold");
+    const Json& texture = textures[static_cast<std::size_t>(i)];
+    set_sampler(index(texture, "sampler"), m.material);
+    set_image(texture, m.material);
+  }
+
+  void set_sampler(int i, Material& m) const {
+    const Json& samplers = member(json_, "samplers", Json::value_t::array);
+    if (i < 0 || i >= static_cast<int>(samplers.size())) return;
+    const auto wrap = [&](const char* key) {
+      const int mode = index(samplers[static_cast<std::size_t>(i)], key);
+      return mode == 33071 ? Wrap::kClamp : mode == 33648 ? Wrap::kMirror : Wrap::kRepeat;
+    };
+    m.wrap_u = wrap("wrapS"), m.wrap_v = wrap("wrapT");
+  }
+
+  void set_image(const Json& texture, Material& m) {
+    const Json& extensions = member(texture, "extensions");
+    int source = index(member(extensions, "EXT_texture_webp"), "source");
+    if (source < 0) source = index(texture, "source");
+    if (source < 0 && index(member(extensions, "KHR_texture_basisu"), "source") >= 0)
+      return warn(
+          "its textures are KTX2 (KHR_texture_basisu), which is not read: write them as "
+          "JPEG, PNG or WebP");
+    const Json& images = member(json_, "images", Json::value_t::array);
+    if (source < 0 || source >= static_cast<int>(images.size()))
+      return warn("names image " + std::to_string(source) + ", which it does not hold");
+    const ImagePlace place = find_image(images[static_cast<std::size_t>(source)], source);
+    if (!place.path.empty()) m.image = image_number(look_.images, place);
+  }
+
+  ImagePlace find_image(const Json& image, int number) {
+    if (image.is_object() && image.contains("uri") && image["uri"].is_string())
+      return place_of_uri(image["uri"].get<std::string>());
+    const Json& views = member(json_, "bufferViews", Json::value_t::array);
+    const int v = index(image, "bufferView");
+    if (v >= 0 && v < static_cast<int>(views.size()))
+      return place_of_view(views[static_cast<std::size_t>(v)]);
+    warn("its image " + std::to_string(number) + " has neither bytes nor a file");
+    return {};
+  }
+
+  ImagePlace place_of_view(const Json& view) {
+    const Json& buffers = member(json_, "buffers", Json::value_t::array);
+    const int b = index(view, "buffer");
+    const auto offset = static_cast<std::size_t>(index(view, "byteOffset", 0));
+    const auto length = static_cast<std::size_t>(index(view, "byteLength", 0));
+    if (b < 0 || b >= static_cast<int>(buffers.size()) || length == 0) {
+      warn("an image names a buffer that it does not hold");
+      return {};
+    }
+    const Json& buffer = buffers[static_cast<std::size_t>(b)];
+    ImagePlace place{.path = path_};
+    if (!buffer.is_object() || !buffer.contains("uri")) {
+      place.offset = binary_ + offset, place.length = length;
+      return place;
+    }
+    place = place_of_uri(buffer["uri"].is_string() ? buffer["uri"].get<std::string>() : "");
+    if (place.is_base64)
+      place.skip = offset, place.take = length;
+    else
+      place.offset = offset, place.length = length;
+    return place;
+  }
+
+  ImagePlace place_of_uri(const std::string& uri) {
+    if (uri.starts_with("data:")) return place_of_data(uri);
+    const std::string file = find_beside(path_, percent_decoded(uri));
+    if (file.empty()) warn("its texture '" + uri.substr(0, 80) + "' is missing");
+    return {.path = file};
+  }
+
+  /// Where a data URI stands in the file.
+  ImagePlace place_of_data(const std::string& uri) {
+    const std::size_t comma = uri.find(',');
+    const std::size_t digits = uri.size() - std::min(comma + 1, uri.size());
+    for (std::size_t at = 0;
+         comma != uri.npos && (at = bytes_.find(";base64,", at)) != bytes_.npos;) {
+      at += 8;
+      std::size_t read = 0, end = at;
+      for (; read < digits && end < bytes_.size(); ++end) {
+        if (bytes_[end] == '\\') continue;
+        if (bytes_[end] != uri[comma + 1 + read]) break;
+        ++read;
+      }
+      if (read < digits) continue;
+      std::error_code error;
+      const std::uintmax_t size = fs::file_size(path_, error);  // a byte order mark was taken off
+      const std::size_t before = error || size < bytes_.size() ? 0 : size - bytes_.size();
+      return {.path = path_, .offset = before + at, .length = end - at, .is_base64 = true};
+    }
+    warn("an image in a data URI is no base64");
+    return {};
+  }
+
+  /// Each once.
+  void warn(const std::string& what) {
+    if (std::find(warnings_.begin(), warnings_.end(), what) == warnings_.end())
+      warnings_.push_back(what);
+  }
+
+  const std::string& path_;
+  std::string_view bytes_;
+  std::size_t binary_;
+  const Json& json_;
+  std::vector<std::string>& warnings_;
+  GltfLook look_;
+};
+
+}  // namespace
+
+GltfLook read_gltf_look(const std::string& path, std::string_view bytes, std::size_t binary,
+                        const Json& json, std::vector<std::string>& warnings) {
+  return LookReader(path, bytes, binary, json, warnings).read();
+}
+
+}  // namespace colod::mesh_io

@@ -1,0 +1,307 @@
+#include "paint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "image/image.h"
+#include "image/packing.h"
+
+namespace colod {
+
+namespace {
+
+using Light = Eigen::Vector3d;  // linear, 0..1
+
+constexpr double kTurn = 0.8;   // cosine between the normals of a chart's faces
+constexpr double kWidest = 5;   // metres, a chart
+constexpr int kGutter = 2;      // texels
+constexpr int kLargest = 8192;  // texels a side
+constexpr int kQuality = 90;
+constexpr double kDot = 0.12;      // metres, of the word's letters
+constexpr double kWordEvery = 9;   // metres along a wall
+constexpr double kWordFoot = 1.2;  // metres above the house's foot
+
+/// COLOD, seven rows of five dots a letter, highest row first.
+constexpr std::array<std::array<int, 7>, 5> kWord = {{{14, 17, 16, 16, 16, 17, 14},
+                                                      {14, 17, 17, 17, 17, 17, 14},
+                                                      {16, 16, 16, 16, 16, 16, 31},
+                                                      {14, 17, 17, 17, 17, 17, 14},
+                                                      {30, 17, 17, 17, 17, 17, 30}}};
+
+/// 0..1, by whole numbers.
+double noise(long a, long b, long c) {
+  std::uint64_t h = static_cast<std::uint64_t>(a) * 0x9E3779B97F4A7C15ULL ^
+                    static_cast<std::uint64_t>(b) * 0xC2B2AE3D27D4EB4FULL ^
+                    static_cast<std::uint64_t>(c) * 0x165667B19E3779F9ULL;
+  h = (h ^ h >> 29) * 0xBF58476D1CE4E5B9ULL;
+  return static_cast<double>((h ^ h >> 32) & 0xFFFF) / 65535;
+}
+
+long cell(double v) { return static_cast<long>(std::floor(v)); }
+
+/// Rows of stones, every other one shifted by half a stone, with joints between them.
+Light courses(double along, double up, double length, double height, const Light& stone,
+              const Light& joint, long seed) {
+  const long row = cell(up / height);
+  const double shifted = along / length + (row % 2 ? 0.5 : 0);
+  const double in_stone = shifted - std::floor(shifted),
+               in_row = up / height - std::floor(up / height);
+  if (in_stone * length < 0.012 || in_row * height < 0.012) return joint;
+  return (0.75 + 0.5 * noise(cell(shifted), row, seed)) * stone;
+}
+
+bool is_in_word(double along, double up) {
+  const double x = along - kWordEvery * std::floor(along / kWordEvery);
+  const long column = cell(x / kDot), row = 6 - cell((up - kWordFoot) / kDot);
+  if (row < 0 || row > 6 || column < 0 || column >= 30 || column % 6 == 5) return false;
+  return kWord[static_cast<std::size_t>(column / 6)][static_cast<std::size_t>(row)] >>
+             (4 - column % 6) &
+         1;
+}
+
+/// What places of one house look like.
+class Paint {
+ public:
+  Paint(double foot, long seed) : foot_(foot), seed_(seed) {}
+
+  Light at(const Vec3& p, const Vec3& normal, ElementKind kind) const {
+    const Light sky = (0.7 + 0.3 * normal.z()) * Light::Ones();
+    return surface(p, normal, kind).cwiseProduct(sky).cwiseMin(1).cwiseMax(0);
+  }
+
+ private:
+  Light surface(const Vec3& p, const Vec3& normal, ElementKind kind) const {
+    const double up = p.z() - foot_;
+    if (kind == ElementKind::kWindow) return glass(up);
+    if (kind == ElementKind::kDoor) return wood(p, normal);
+    if (std::abs(normal.z()) > 0.9 && normal.z() < 0) return {0.25, 0.25, 0.24};
+    if (normal.z() > 0.35) return roof(p, normal);
+    const Vec3 right = Vec3::UnitZ().cross(normal).normalized();
+    const double along = right.dot(p);
+    if (is_in_word(along, up)) return {0.03, 0.1, 0.5};
+    if (noise(seed_, 1, 0) < 0.5)
+      return courses(along, up, 0.5, 0.15, {0.42, 0.12, 0.07}, {0.55, 0.52, 0.48}, seed_);
+    const double grain = noise(cell(along * 8), cell(up * 8), seed_);
+    return (0.85 + 0.2 * grain) * Light(0.7, 0.6 + 0.2 * noise(seed_, 2, 0), 0.4);
+  }
+
+  Light glass(double up) const {
+    const double in_storey = up / 3 - std::floor(up / 3);
+    return (0.4 + 0.8 * in_storey) * Light(0.12, 0.22, 0.35);
+  }
+
+  Light wood(const Vec3& p, const Vec3& normal) const {
+    const double along = Vec3::UnitZ().cross(normal).dot(p);
+    return (0.6 + 0.4 * noise(cell(along / 0.12), 5, seed_)) * Light(0.2, 0.1, 0.04);
+  }
+
+  Light roof(const Vec3& p, const Vec3& normal) const {
+    const Vec3 level = Vec3::UnitZ().cross(normal);
+    const Vec3 along = level.norm() > 0.05 ? Vec3(level.normalized()) : Vec3(Vec3::UnitX());
+    const Light tile = noise(seed_, 3, 0) < 0.6 ? Light(0.4, 0.1, 0.05) : Light(0.14, 0.15, 0.17);
+    return courses(along.dot(p), normal.cross(along).dot(p), 0.4, 0.6, tile, 0.3 * tile, seed_);
+  }
+
+  double foot_;
+  long seed_;
+};
+
+/// Neighbouring faces that look the same way, seen along the first one's normal.
+struct Patch {
+  std::vector<int> faces;
+  Vec3 normal, right, down;
+  Vec2 corner = Vec2::Constant(INFINITY), size = Vec2::Zero();
+  double texel = 0;
+
+  Vec2 flat(const Vec3& p) const { return {right.dot(p), down.dot(p)}; }
+};
+
+class Painter {
+ public:
+  Painter(const SynthBuilding& building, double texel)
+      : building_(building), mesh_(building.source.mesh), texel_(texel) {
+    for (const Vec3& v : mesh_.vertices) box_.extend(v);
+    for (const Face& f : mesh_.faces) {
+      const Vec3 cross = face_cross(mesh_, f);
+      normals_.push_back(cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(Vec3::UnitZ()));
+    }
+    long seed = 0;
+    for (const char c : building.source.name) seed = 31 * seed + c;
+    seed_ = seed;
+  }
+
+  PaintedModel paint() {
+    grow_patches();
+    place_patches();
+    const std::string name = building_.source.name;
+    return {obj(), "newmtl " + name + "\nKd 1 1 1\nillum 0\nmap_Kd " + name + ".jpg\n",
+            encode_image(picture(), ImageFormat::kJpeg, kQuality)};
+  }
+
+ private:
+  std::vector<std::vector<int>> neighbours() const {
+    std::map<std::pair<int, int>, int> over_edge;
+    std::vector<std::vector<int>> beside(mesh_.faces.size());
+    for (int f = 0; f < static_cast<int>(mesh_.faces.size()); ++f)
+      for (int k = 0; k < 3; ++k) {
+        const int a = mesh_.faces[f][k], b = mesh_.faces[f][(k + 1) % 3];
+        const auto [it, is_new] = over_edge.emplace(std::minmax(a, b), f);
+        if (!is_new) beside[f].push_back(it->second), beside[it->second].push_back(f);
+      }
+    return beside;
+  }
+
+  void grow_patches() {
+    const std::vector<std::vector<int>> beside = neighbours();
+    std::vector<char> is_taken(mesh_.faces.size(), 0);
+    for (int seed = 0; seed < static_cast<int>(mesh_.faces.size()); ++seed) {
+      if (is_taken[seed]) continue;
+      Patch patch{{seed}, normals_[seed], {}, {}};
+      const auto [u, v] = plane_basis(patch.normal);
+      patch.right = u, patch.down = -v;
+      is_taken[seed] = 1;
+      const Vec3 start = mesh_.vertices[mesh_.faces[seed][0]];
+      for (std::size_t i = 0; i < patch.faces.size(); ++i)
+        for (const int f : beside[patch.faces[i]]) {
+          const bool is_near = (mesh_.vertices[mesh_.faces[f][0]] - start).norm() < kWidest;
+          if (is_taken[f] || !is_near || normals_[f].dot(patch.normal) < kTurn) continue;
+          is_taken[f] = 1;
+          patch.faces.push_back(f);
+        }
+      patches_.push_back(std::move(patch));
+    }
+  }
+
+  void place_patches() {
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      Patch& patch = patches_[i];
+      Vec2 most = Vec2::Constant(-INFINITY);
+      for (const int f : patch.faces)
+        for (const int v : mesh_.faces[f]) {
+          patch.corner = patch.corner.cwiseMin(patch.flat(mesh_.vertices[v]));
+          most = most.cwiseMax(patch.flat(mesh_.vertices[v]));
+        }
+      patch.size = most - patch.corner;
+      patch.texel = texel_ * (1 + std::floor(3 * noise(static_cast<long>(i), 4, seed_)) / 2);
+    }
+    for (double scale = 1; width_ == 0 && scale < 100; scale *= 1.2) {
+      rects_.clear();
+      for (Patch& patch : patches_) {
+        if (scale > 1) patch.texel *= 1.2;
+        const auto side = [&](double metres) {
+          return (static_cast<int>(std::ceil(metres / patch.texel)) + 2 * kGutter + 3) / 4 * 4;
+        };
+        rects_.push_back({side(patch.size.x()), side(patch.size.y())});
+      }
+      const auto [width, height] = pack_rects(rects_, kLargest);
+      width_ = width, height_ = height;
+    }
+  }
+
+  ElementKind kind_of(int face) const {
+    const int object = building_.source.face_object[face];
+    return object < 0 ? ElementKind::kPlain : building_.parts[object].kind;
+  }
+
+  /// Of the faces of a patch the one that lies under a place of its plane, else the nearest.
+  int face_at(const Patch& patch, const Vec2& q) const {
+    int best = patch.faces[0];
+    double least = INFINITY;
+    for (const int f : patch.faces) {
+      std::array<Vec2, 3> c;
+      for (int k = 0; k < 3; ++k) c[k] = patch.flat(mesh_.vertices[mesh_.faces[f][k]]);
+      double outside = 0;  // how far beyond the farthest side; the plane's axes are mirrored
+      for (int k = 0; k < 3; ++k) {
+        const Vec2 side = c[(k + 1) % 3] - c[k], to = q - c[k];
+        outside = std::max(outside, (side.x() * to.y() - side.y() * to.x()) / (side.norm() + 1e-9));
+      }
+      if (outside < least) least = outside, best = f;
+      if (outside <= 0) break;
+    }
+    return best;
+  }
+
+  Raster picture() const {
+    Raster out(width_, height_);
+    const Paint paint(box_.min.z(), seed_);
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      const Patch& patch = patches_[i];
+      const PackedRect& r = rects_[i];
+      for (int y = 0; y < r.height; ++y)
+        for (int x = 0; x < r.width; ++x) {
+          const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
+          const int face = face_at(patch, q);
+          const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
+          const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
+          const double slope = std::max(0.2, normals_[face].dot(patch.normal));
+          const double depth = normals_[face].dot(corner - in_plane) / slope;
+          const Light light =
+              paint.at(in_plane + depth * patch.normal, normals_[face], kind_of(face));
+          for (int c = 0; c < 3; ++c)
+            out.at(r.x + x, r.y + y)[c] = to_srgb(static_cast<float>(light[c]));
+        }
+    }
+    return out;
+  }
+
+  std::string obj() const {
+    const std::string& name = building_.source.name;
+    std::string text = "# " + name + ", " + building_.style + ", metres, z up\nmtllib " + name +
+                       ".mtl\nusemtl " + name + "\n";
+    char line[160];
+    for (const Vec3& v : mesh_.vertices) {
+      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", v.x(), v.y(), v.z());
+      text += line;
+    }
+    std::vector<int> patch_of(mesh_.faces.size());
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+      for (const int f : patches_[i].faces) patch_of[f] = static_cast<int>(i);
+    std::vector<std::vector<int>> faces_of(building_.parts.size() + 1);
+    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+      const int object = building_.source.face_object[f];
+      faces_of[object < 0 ? building_.parts.size() : object].push_back(static_cast<int>(f));
+    }
+    int next = 1;
+    for (std::size_t part = 0; part < faces_of.size(); ++part) {
+      const bool is_part = part < building_.parts.size();
+      text += std::string("g ") + (is_part ? name_of(building_.parts[part].kind) : "floater") +
+              "__" + std::to_string(part) + "\n";
+      for (const int f : faces_of[part]) {
+        const Patch& patch = patches_[patch_of[f]];
+        const PackedRect& r = rects_[patch_of[f]];
+        for (const int v : mesh_.faces[f]) {
+          const Vec2 at = (patch.flat(mesh_.vertices[v]) - patch.corner) / patch.texel +
+                          Vec2(r.x + kGutter, r.y + kGutter);
+          std::snprintf(line, sizeof line, "vt %.7f %.7f\n", at.x() / width_, 1 - at.y() / height_);
+          text += line;
+        }
+        const Face& c = mesh_.faces[f];
+        std::snprintf(line, sizeof line, "f %d/%d %d/%d %d/%d\n", c[0] + 1, next, c[1] + 1,
+                      next + 1, c[2] + 1, next + 2);
+        text += line;
+        next += 3;
+      }
+    }
+    return text;
+  }
+
+  const SynthBuilding& building_;
+  const Mesh& mesh_;
+  double texel_;
+  Box box_;
+  long seed_ = 0;
+  std::vector<Vec3> normals_;
+  std::vector<Patch> patches_;
+  std::vector<PackedRect> rects_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+PaintedModel paint(const SynthBuilding& building, double texel) {
+  return Painter(building, texel).paint();
+}
+
+}  // namespace colod

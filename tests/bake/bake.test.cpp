@@ -1,0 +1,214 @@
+#include "bake/bake.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "core/parallel.h"
+#include "image/cache.h"
+#include "meshes.h"
+#include "temporary_folder.h"
+
+using namespace colod;
+using namespace colod::test;
+
+namespace {
+
+constexpr int kSide = 256;   // pixels of a source image
+constexpr double kEdge = 4;  // metres that it covers
+const double kTexel = kEdge / kSide;
+
+template <typename Color>
+Raster painted(int side, const Color& color) {
+  Raster raster(side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const Rgb rgb = color(x, y);
+      std::copy(rgb.begin(), rgb.end(), raster.at(x, y));
+    }
+  return raster;
+}
+
+/// Red rises to the right, green downward; blue is a checkerboard of 16 pixels.
+Raster ramps() {
+  return painted(kSide, [](int x, int y) {
+    return Rgb{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+               static_cast<std::uint8_t>((x / 16 + y / 16) % 2 ? 230 : 20)};
+  });
+}
+
+/// A square of kEdge in the plane y = 0, seen from −y, with an image on it: x is u, z is −v.
+struct Wall {
+  TemporaryFolder folder;
+  Mesh mesh;
+  Appearance look;
+  ImageCache cache{std::size_t{64} << 20};
+
+  explicit Wall(const Raster& raster) {
+    const std::string path = (folder / "wall.png").string();
+    std::ofstream(path, std::ios::binary) << encode_image(raster, ImageFormat::kPng, 0);
+    look.images = {{.path = path}};
+    look.materials.resize(1);
+    look.materials[0].image = 0;
+    mesh.vertices = {{0, 0, 0}, {kEdge, 0, 0}, {kEdge, 0, kEdge}, {0, 0, kEdge}};
+    mesh.faces = {{0, 1, 2}, {0, 2, 3}};
+    look.face_material = {0, 0};
+    look.uvs = {{Vec2f(0, 1), Vec2f(1, 1), Vec2f(1, 0)}, {Vec2f(0, 1), Vec2f(1, 0), Vec2f(0, 0)}};
+  }
+};
+
+/// Facets that are rectangles, each with vertices of its own, seen from −y.
+PolygonMesh rectangles(const std::vector<std::array<double, 4>>& x_z_width_height, double y) {
+  PolygonMesh mesh;
+  for (const auto& [x, z, w, h] : x_z_width_height) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    const int facet = static_cast<int>(mesh.facets.size());
+    for (const Vec3& p :
+         {Vec3(x, y, z), Vec3(x + w, y, z), Vec3(x + w, y, z + h), Vec3(x, y, z + h)})
+      mesh.vertices.push_back(p);
+    mesh.facets.push_back({-Vec3::UnitY(), facet, {{first, first + 1, first + 2, first + 3}}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.facet_of_triangle.insert(mesh.facet_of_triangle.end(), 2, facet);
+  }
+  return mesh;
+}
+
+/// What a client sees at a place of a triangle: bilinear, clamped.
+Eigen::Vector3d seen_at(const BakedTexture& t, const PolygonMesh& mesh, std::size_t triangle,
+                        const Vec3& p, const Raster& image) {
+  const Vec3 w = barycentric(mesh.mesh(), mesh.triangles[triangle], p);
+  Eigen::Vector2d uv = Eigen::Vector2d::Zero();
+  for (int c = 0; c < 3; ++c)
+    uv += w[c] * t.uvs[triangle][static_cast<std::size_t>(c)].cast<double>();
+  const double x = uv.x() * image.width - 0.5, y = uv.y() * image.height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const std::uint8_t* q =
+          image.at(std::clamp(x0 + i, 0, image.width - 1), std::clamp(y0 + j, 0, image.height - 1));
+      sum +=
+          (i ? x - x0 : 1 - x + x0) * (j ? y - y0 : 1 - y + y0) * Eigen::Vector3d(q[0], q[1], q[2]);
+    }
+  return sum;
+}
+
+/// A mip level as a client makes it: means of 2 × 2 pixels.
+Raster halved(const Raster& fine) {
+  Raster out(fine.width / 2, fine.height / 2);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        out.at(x, y)[c] = static_cast<std::uint8_t>(
+            (fine.at(2 * x, 2 * y)[c] + fine.at(2 * x + 1, 2 * y)[c] +
+             fine.at(2 * x, 2 * y + 1)[c] + fine.at(2 * x + 1, 2 * y + 1)[c] + 2) /
+            4);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what a wall shows is baked where it is, as large as it is, and not mirrored") {
+  const Wall wall(ramps());
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  CHECK(baker.warnings().empty());
+  CHECK(baker.source_texel() == Approx(kTexel).epsilon(1e-6));
+  const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0.07);
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.seen == Approx(1));
+  CHECK(t.facts.texel == Approx(kTexel).epsilon(1e-6));
+  double shift_x = 0, shift_z = 0;
+  int count = 0, wrong = 0;
+  for (double x = 0.4; x < 3.6; x += 0.0371)
+    for (double z = 0.4; z < 3.6; z += 0.0393) {
+      const std::size_t triangle = x > z ? 0 : 1;
+      const Eigen::Vector3d rgb = seen_at(t, layer, triangle, Vec3(x, 0.07, z), t.image);
+      shift_x += rgb[0] + 0.5 - x / kTexel;  // in texels: red is the column's number
+      shift_z += rgb[1] + 0.5 - (kEdge - z) / kTexel;
+      const double u = std::fmod(x / kTexel, 16), v = std::fmod((kEdge - z) / kTexel, 16);
+      const bool is_inside = u > 1.1 && u < 14.9 && v > 1.1 && v < 14.9;
+      const bool is_light =
+          (static_cast<int>(x / kTexel) / 16 + static_cast<int>((kEdge - z) / kTexel) / 16) % 2;
+      wrong += is_inside && std::abs(rgb[2] - (is_light ? 230 : 20)) > 2;
+      ++count;
+    }
+  CHECK(std::abs(shift_x / count) < 0.25);
+  CHECK(std::abs(shift_z / count) < 0.25);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("no seam shows where charts of one wall meet, nor two levels down the mip chain") {
+  const Wall wall(painted(kSide, [](int x, int y) {
+    return Rgb{static_cast<std::uint8_t>(60 + x / 2), static_cast<std::uint8_t>(200 - y / 2), 90};
+  }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const PolygonMesh layer = rectangles({{0, 0, 1.7, 4}, {1.7, 0, 2.3, 4}}, -0.02);
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.charts == 2);
+  Raster image = t.image;
+  for (int level = 0; level < 3; ++level) {
+    for (double z = 0.3; z < 3.7; z += 0.05) {
+      const Vec3 p(1.7, -0.02, z);
+      const Eigen::Vector3d left = seen_at(t, layer, 0, p, image);
+      const Eigen::Vector3d right = seen_at(t, layer, 2, p, image);
+      INFO("level " << level << " height " << z);
+      CHECK((left - right).cwiseAbs().maxCoeff() <= 2 << level);  // ramps rise with the footprint
+    }
+    image = halved(image);
+  }
+}
+
+TEST_CASE("coarse texels are the mean of what they cover, in linear light") {
+  const Wall wall(painted(kSide, [](int x, int y) {
+    return (x + y) % 2 ? Rgb{255, 255, 255} : Rgb{0, 0, 0};
+  }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0.1);
+  const BakedTexture t = baker.bake(layer, {.texel = 16 * kTexel});
+  for (double x = 0.5; x < 3.5; x += 0.25) {
+    const Eigen::Vector3d rgb = seen_at(t, layer, 0, Vec3(x, 0.1, 0.4), t.image);
+    CHECK(std::abs(rgb[0] - 188) <= 2);  // half of the light, not half of the number
+  }
+}
+
+TEST_CASE("what the source does not show is the building's mean, neither black nor smear") {
+  const Wall wall(painted(kSide, [](int, int) { return Rgb{200, 100, 50}; }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0);
+  const PolygonMesh far = rectangles({{0, 0, 2, 2}}, 30);
+  for (const Vec3& p : far.vertices) layer.vertices.push_back(p);
+  layer.facets.push_back({-Vec3::UnitY(), 1, {{4, 5, 6, 7}}});
+  layer.triangles.insert(layer.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+  layer.facet_of_triangle.insert(layer.facet_of_triangle.end(), {1, 1});
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.unseen == Approx(0.2).margin(0.01));
+  CHECK(t.facts.seen == Approx(0.8).margin(0.01));
+  for (std::size_t i = 0; i < t.image.rgb.size(); i += 3) {
+    REQUIRE(std::abs(t.image.rgb[i] - 200) <= 1);
+    REQUIRE(std::abs(t.image.rgb[i + 2] - 50) <= 1);
+  }
+  CHECK(baker.facet_colors(layer, 0.5) == std::vector<Rgb>(2, Rgb{200, 100, 50}));
+}
+
+TEST_CASE("an atlas keeps to its largest side, with larger texels") {
+  const Wall wall(ramps());
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const BakedTexture t = baker.bake(rectangles({{0, 0, kEdge, kEdge}}, 0), {.largest = 100});
+  CHECK(std::max(t.image.width, t.image.height) <= 100);
+  CHECK(t.image.width % 4 + t.image.height % 4 == 0);
+  CHECK(t.facts.texel > 2 * kTexel);
+  CHECK(t.facts.seen == Approx(1));
+  for (const auto& corners : t.uvs)
+    for (const Vec2f& uv : corners) CHECK((uv.minCoeff() >= 0 && uv.maxCoeff() <= 1));
+}
+
+TEST_CASE("any number of threads bakes the same texels") {
+  const Wall wall(ramps());
+  const PolygonMesh layer = rectangles({{0, 0, 2, 4}, {2.1, 0, 1.9, 2}, {2.1, 2, 1.9, 2}}, 0.03);
+  const auto baked = [&](int threads) {
+    BakedTexture t;
+    in_threads(threads, [&] { t = Baker(wall.mesh, wall.look, wall.cache).bake(layer, {}); });
+    return t.image.rgb;
+  };
+  CHECK(baked(1) == baked(3));
+}

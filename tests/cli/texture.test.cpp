@@ -1,0 +1,174 @@
+// The program from outside: what a textured source becomes.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "image/image.h"
+#include "meshes.h"
+#include "temporary_folder.h"
+
+using namespace colod;
+using Catch::Contains;
+namespace fs = std::filesystem;
+using Files = std::map<std::string, std::string>;
+
+namespace {
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Folder : public test::TemporaryFolder {
+ public:
+  void write(const std::string& name, const std::string& bytes) const {
+    fs::create_directories((path() / name).parent_path());
+    std::ofstream(path() / name, std::ios::binary) << bytes;
+  }
+
+  /// A gabled house whose walls and roof show their own places; without `mtl` a bare one.
+  void write_house(const std::string& name, const std::string& mtl) const {
+    const Mesh m = test::gable_house(10, 8, 6, 3);
+    std::ostringstream out;
+    if (!mtl.empty()) out << "mtllib house.mtl\nusemtl wall\n";
+    for (const Vec3& v : m.vertices) {
+      out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+      if (!mtl.empty()) out << "vt " << (v.x() + v.y()) / 20 << ' ' << v.z() / 10 << '\n';
+    }
+    for (const Face& f : m.faces) {
+      out << 'f';
+      for (const int v : f) mtl.empty() ? out << ' ' << v + 1 : out << ' ' << v + 1 << '/' << v + 1;
+      out << '\n';
+    }
+    write(name + "/house.obj", out.str());
+    if (!mtl.empty()) write(name + "/house.mtl", mtl);
+  }
+
+  int run(const std::string& arguments) const {
+    const std::string command =
+        "cd " + path().string() + " && " + COLOD_BINARY + " " + arguments + " 2> err";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  /// All files that a build writes but its report.
+  Files built(const std::string& input, const std::string& options = "") const {
+    fs::remove_all(path() / "out");
+    REQUIRE(run("build " + input + " -o out --ns 24 --nr 40 --no-report-html " + options) == 0);
+    return files("out");
+  }
+  Files files(const std::string& folder) const {
+    Files all;
+    for (const auto& entry : fs::recursive_directory_iterator(path() / folder))
+      if (entry.is_regular_file() && entry.path().filename() != "report.json")
+        all[fs::relative(entry.path(), path() / folder).string()] = slurp(entry.path());
+    return all;
+  }
+  std::string err() const { return slurp(path() / "err"); }
+  nlohmann::json report() const { return nlohmann::json::parse(slurp(path() / "out/report.json")); }
+};
+
+std::string checkers() {
+  Raster raster(128, 128);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x)
+      for (int c = 0; c < 3; ++c) raster.at(x, y)[c] = (x / 8 + y / 8) % 2 ? 220 : 40;
+  return encode_image(raster, ImageFormat::kPng, 0);
+}
+
+constexpr const char* kMtl = "newmtl wall\nKd 0.9 0.3 0.2\nmap_Kd wall.png\n";
+constexpr const char* kAll = "--format glb,3dtiles,engine,obj,ply ";
+
+/// The coordinates of an OBJ's points.
+std::string points_of(const std::string& obj) {
+  std::string out;
+  std::istringstream in(obj);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("v ")) out += line + "\n";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a textured house is textured in every output, and the report says from what") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  folder.write("in/wall.png", checkers());
+  const Files files = folder.built("in", kAll);
+  for (const char* name :
+       {"buildings/house.glb", "engine/house_LOD0.glb", "buildings/house.layer2.obj"})
+    CHECK_THAT(files.at(name),
+               Contains(std::string(name).ends_with("obj") ? "mtllib" : "image/jpeg"));
+  CHECK(files.contains("buildings/house.layer2.jpg"));
+  int textured_tiles = 0;
+  for (const auto& [name, bytes] : files)
+    textured_tiles += name.starts_with("tiles/") && bytes.find("image/jpeg") != bytes.npos;
+  CHECK(textured_tiles >= 1);
+  double coarser = 0;
+  for (const auto& layer : folder.report()["buildings"][0]["layers"]) {
+    const auto& texture = layer["texture"];
+    CHECK(texture["seen"].get<double>() > 0.9);
+    CHECK(texture["seen"].get<double>() + texture["nearest"].get<double>() +
+              texture["filled"].get<double>() + texture["unseen"].get<double>() ==
+          Approx(1));
+    CHECK(texture["texel"].get<double>() >= layer["gsd"].get<double>());
+    CHECK(texture["bytes"].get<double>() >= coarser);
+    coarser = texture["bytes"].get<double>();
+  }
+}
+
+TEST_CASE("without textures, and in shape, a textured house is the same as a bare one") {
+  const Folder folder;
+  folder.write_house("bare", "");
+  folder.write_house("dressed", kMtl);
+  folder.write("dressed/wall.png", checkers());
+  const Files bare = folder.built("bare", kAll);
+  CHECK(folder.built("dressed", std::string(kAll) + "--texture none") == bare);
+  const Files dressed = folder.built("dressed", kAll);
+  for (const char* name : {"buildings/house.layer0.obj", "buildings/house.layer2.obj"})
+    CHECK(points_of(dressed.at(name)) == points_of(bare.at(name)));
+}
+
+TEST_CASE("bad images cost themselves, with a warning that names file and building") {
+  const Folder folder;
+  folder.write_house("bare", "");
+  folder.write_house("in", kMtl);
+  const Files bare = folder.built("bare", kAll);
+  folder.built("in", kAll);
+  CHECK_THAT(folder.err(), Contains("wall.png") && Contains("missing"));
+  const std::string whole = checkers();
+  for (const std::string& bytes : {whole.substr(0, whole.size() / 2), std::string("nonsense")}) {
+    folder.write("in/wall.png", bytes);
+    const Files files = folder.built("in", kAll);
+    CHECK_THAT(folder.err(), Contains("house: texture 'wall.png'"));
+    CHECK(points_of(files.at("buildings/house.layer2.obj")) ==
+          points_of(bare.at("buildings/house.layer2.obj")));
+  }
+}
+
+TEST_CASE("threads and stages change no texel") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  folder.write("in/wall.png", checkers());
+  const Files one = folder.built("in", std::string(kAll) + "--threads 1");
+  CHECK(folder.built("in", std::string(kAll) + "--threads 3") == one);
+  REQUIRE(folder.run("segment in -o s.colod --ns 24 --nr 40") == 0);
+  REQUIRE(folder.run("analyze s.colod") == 0);
+  REQUIRE(folder.run("mesh s.colod") == 0);
+  REQUIRE(folder.run(std::string("export s.colod -o staged --no-report-html ") + kAll) == 0);
+  CHECK(folder.files("staged") == one);
+}
+
+TEST_CASE("colors gives each facet one, also where a source has plain materials") {
+  const Folder folder;
+  folder.write_house("in", "newmtl wall\nKd 0.9 0.3 0.2\n");
+  const Files plain = folder.built("in");
+  CHECK(plain.at("buildings/house.glb").find("COLOR_0") == std::string::npos);
+  const Files colored = folder.built("in", "--texture colors");
+  CHECK_THAT(colored.at("buildings/house.glb"), Contains("COLOR_0") && !Contains("image/"));
+  CHECK_THAT(colored.at("tiles/root.glb"), Contains("COLOR_0"));
+}

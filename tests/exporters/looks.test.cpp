@@ -1,0 +1,171 @@
+// What exporters write of looks, read back by room `read`.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "exporters/gltf/engine.h"
+#include "exporters/gltf/glb.h"
+#include "exporters/plain/obj.h"
+#include "exporters/tiles3d/tiles3d.h"
+#include "exporters_helpers.h"
+#include "image/cache.h"
+#include "read/read.h"
+#include "temporary_folder.h"
+
+using namespace colod;
+using namespace colod::test;
+
+namespace {
+
+constexpr int kSide = 64;
+
+/// Where a place of a house lies on its image.
+Vec2 on_image(const Vec3& p) { return {(p.x() + 1) / 20, (p.y() + p.z() / 2 + 1) / 20}; }
+
+LevelLook look_for(const PolygonMesh& mesh, std::uint8_t shade, ImageFormat format) {
+  LevelLook look;
+  look.raster = Raster(kSide, kSide);
+  std::fill(look.raster.rgb.begin(), look.raster.rgb.end(), shade);
+  look.width = look.height = kSide;
+  look.format = format;
+  look.image = encode_image(look.raster, format, 90);
+  for (const Face& f : mesh.triangles)
+    look.uvs.push_back({on_image(mesh.vertices[f[0]]).cast<float>(),
+                        on_image(mesh.vertices[f[1]]).cast<float>(),
+                        on_image(mesh.vertices[f[2]]).cast<float>()});
+  look.facet_colors.assign(mesh.facets.size(), Rgb{shade, 10, 20});
+  return look;
+}
+
+ExportBuilding dressed(ExportBuilding building, ImageFormat format = ImageFormat::kPng) {
+  for (ExportLevel& level : building.levels)
+    level.look =
+        look_for(level.mesh, static_cast<std::uint8_t>(50 * (1 + level.layers[0])), format);
+  return building;
+}
+
+/// The only source of a file that was written.
+Source written(const TemporaryFolder& folder, const std::vector<Encoded>& files, int coarser = 0) {
+  for (const Encoded& file : files) {
+    std::filesystem::create_directories((folder / file.path).parent_path());
+    std::ofstream(folder / file.path, std::ios::binary) << file.bytes;
+  }
+  const ReadResult result = read_sources({(folder / files[0].path).string()},
+                                         {.split = Split::kNone, .coarser = coarser});
+  for (const ReadFailure& f : result.failures) UNSCOPED_INFO(f.message);
+  REQUIRE(result.sources.size() == 1);
+  return result.sources[0];
+}
+
+/// Largest distance of a corner's coordinates from where they belong, in texels.
+double farthest(const Source& s, const Vec3& origin) {
+  REQUIRE(s.look.uvs.size() == s.mesh.faces.size());
+  double most = 0;
+  for (std::size_t f = 0; f < s.mesh.faces.size(); ++f)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec2 wanted = on_image(s.mesh.vertices[s.mesh.faces[f][c]] - origin);
+      most = std::max(most, kSide * (s.look.uvs[f][c].cast<double>() - wanted).norm());
+    }
+  return most;
+}
+
+std::uint8_t shade(const Source& s) {
+  const ImageCache::Entry entry = ImageCache(1 << 20).get(s.look.images.at(0));
+  REQUIRE(entry.pyramid);
+  return entry.pyramid->levels[0].at(3, 3)[0];
+}
+
+const Vec3 kOrigin(10, 20, 30);
+
+}  // namespace
+
+TEST_CASE("each level of a building's GLB has its own image, in its place to half a texel") {
+  const TemporaryFolder folder;
+  for (const Compression c : {Compression::kNone, Compression::kDraco, Compression::kMeshopt})
+    for (int coarser = 0; coarser < 3; ++coarser) {
+      const ExportBuilding house = dressed(three_layers("house", kOrigin));
+      const Source s = written(folder, {encode_building_glb(house, {.compression = c})}, coarser);
+      INFO("compression " << static_cast<int>(c) << ", " << coarser << " levels down");
+      CHECK(farthest(s, kOrigin) < 0.5);
+      CHECK(shade(s) == 50 * (3 - coarser));
+    }
+}
+
+TEST_CASE("a GLB begins with the coarsest level's image, unlit, and WebP is named") {
+  const ExportBuilding house = dressed(three_layers("house", kOrigin), ImageFormat::kWebp);
+  const Glb glb = parse_glb(encode_building_glb(house).bytes);
+  REQUIRE(glb.json["images"].size() == 3);
+  CHECK(glb.json["materials"].size() == 3);
+  for (const auto& m : glb.json["materials"])
+    CHECK(m["extensions"].contains("KHR_materials_unlit"));
+  CHECK(glb.json["images"][0]["mimeType"] == "image/webp");
+  CHECK(glb.json["textures"][1]["extensions"]["EXT_texture_webp"]["source"] == 1);
+  const auto& required = glb.json["extensionsRequired"];
+  CHECK(std::count(required.begin(), required.end(), "EXT_texture_webp") == 1);
+  const int first = glb.json["images"][0]["bufferView"];
+  CHECK(glb.json["bufferViews"][first]["byteOffset"] <
+        glb.json["bufferViews"][first + 1]["byteOffset"]);
+}
+
+TEST_CASE("colours of facets come back as colours of vertices") {
+  const TemporaryFolder folder;
+  ExportBuilding house = dressed(three_layers("house", kOrigin));
+  for (ExportLevel& level : house.levels) {
+    level.look.uvs.clear(), level.look.image.clear();
+    for (std::size_t f = 0; f < level.look.facet_colors.size(); ++f)
+      level.look.facet_colors[f] = {static_cast<std::uint8_t>(3 + f), 200, 90};
+  }
+  for (const Compression c : {Compression::kNone, Compression::kDraco, Compression::kMeshopt}) {
+    const Source s = written(folder, {encode_building_glb(house, {.compression = c})});
+    std::set<int> reds;
+    for (const auto& corners : s.look.colors) {
+      CHECK((corners[0] == corners[1] && corners[0][1] == 200));
+      reds.insert(corners[0][0]);
+    }
+    CHECK(reds.size() == house.levels.back().look.facet_colors.size());
+    CHECK(*reds.begin() == 3);
+  }
+}
+
+TEST_CASE(
+    "a group's buildings share one image and one draw call, a stand-in has its sides' colours") {
+  std::vector<ExportBuilding> buildings;
+  for (const ExportBuilding& b : street(6)) buildings.push_back(dressed(b));
+  buildings[2].levels.front().look = {};  // one without appearance among them
+  const std::vector<Encoded> files = encode_tileset(buildings);
+  const Glb root = parse_glb(find(files, "tiles/root.glb").bytes);
+  CHECK(root.json["meshes"][0]["primitives"].size() == 1);
+  CHECK(root.json["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+  int groups = 0;
+  for (const Encoded& file : files) {
+    if (!file.path.ends_with(".glb")) continue;
+    const Glb glb = parse_glb(file.bytes);
+    if (!glb.json.contains("images")) continue;
+    CHECK(glb.json["images"].size() == 1);
+    CHECK(glb.json["materials"].size() == 1);
+    const auto& table = glb.json["extensions"]["EXT_structural_metadata"]["propertyTables"][0];
+    groups += table["count"] == 6;
+  }
+  CHECK(groups == 1);
+}
+
+TEST_CASE("an engine's image has sides that are powers of two, an OBJ names its material") {
+  const TemporaryFolder folder;
+  ExportBuilding house = dressed(three_layers("house", kOrigin));
+  LevelLook& look = house.levels.back().look;
+  look.raster = Raster(60, 36);
+  look.width = 60, look.height = 36;
+  look.image = encode_image(look.raster, look.format, 90);
+  const Source engine = written(folder, encode_engine_levels(house));
+  const ImageCache::Facts facts = ImageCache(1 << 20).facts(engine.look.images.at(0));
+  CHECK((facts.width == 64 && facts.height == 64));
+  const ExportLevel& level = house.levels[1];
+  std::vector<Encoded> files = {encode_obj(house, level, 1)};
+  for (Encoded& file : encode_obj_material(house, level, 1)) files.push_back(std::move(file));
+  REQUIRE(files.size() == 3);
+  const Source obj = written(folder, files);
+  CHECK(farthest(obj, kOrigin) < 0.01);
+  CHECK(shade(obj) == 100);
+  const Source ply = written(folder, {encode_ply(house, level, 1)});
+  CHECK(ply.look.colors.empty());  // one colour everywhere tells nothing
+}
