@@ -208,9 +208,7 @@ std::vector<Plane> to_planes(const Items& items, std::vector<Region>& regions, d
   return planes;
 }
 
-Error no_plane(const Source& source) {
-  return {Stage::kProcess, source.name, kNoPlane};
-}
+Error no_plane(const Source& source) { return {Stage::kProcess, source.name, kNoPlane}; }
 
 /// The planes of points that stand for a mesh.
 Planes planes_of_samples(const Source& source, const PlaneOptions& options) {
