@@ -328,9 +328,8 @@ TEST_CASE("an extension that is needed and not read is named, what is lost is sa
   painted.json["materials"] = {{{"name", "red"}}};
   CHECK(said(painted.read()).empty());
   painted.json["materials"].push_back({{"name", "blue"}});
-  CHECK_THAT(said(painted.read()), Contains("2 materials"));
   painted.json["images"] = {{{"uri", "../../secret.png"}}};
-  CHECK_THAT(said(painted.read()), Contains("textures"));
+  CHECK(said(painted.read()).empty());  // nothing wears them
   painted.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   CHECK_THAT(said(painted.read()), Contains("morph targets"));
 }
