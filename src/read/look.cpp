@@ -26,7 +26,7 @@ std::string trimmed(std::string_view s) {
 
 /// How many numbers an option of a map takes: fewest and most; {-1, -1}: no option.
 std::pair<int, int> arguments_of(const std::string& option) {
-  static const std::pair<const char*, std::pair<int, int>> kOptions[] = {
+  static constexpr std::pair<const char*, std::pair<int, int>> kOptions[] = {
       {"-blendu", {1, 1}}, {"-blendv", {1, 1}},    {"-cc", {1, 1}},    {"-clamp", {1, 1}},
       {"-mm", {2, 2}},     {"-o", {1, 3}},         {"-s", {1, 3}},     {"-t", {1, 3}},
       {"-texres", {1, 1}}, {"-bm", {1, 1}},        {"-boost", {1, 1}}, {"-imfchan", {1, 1}},

@@ -21,7 +21,7 @@ namespace colod {
 
 /// Records of doubles and nothing else.
 template <typename T>
-constexpr bool is_doubles = std::is_same_v<T, Vec3> || std::is_same_v<T, std::array<double, 64>> ||
+constexpr bool kIsDoubles = std::is_same_v<T, Vec3> || std::is_same_v<T, std::array<double, 64>> ||
                             std::is_same_v<T, VisibleStep>;
 
 /// One prepared statement of SQLite: bind in order, step, read columns in order.
@@ -61,7 +61,7 @@ class Statement {
       throw Error(Stage::kInput, path_, "damaged: an array has a wrong length");
     std::vector<T> v(bytes.size() / sizeof(T));
     if (!bytes.empty()) std::memcpy(static_cast<void*>(v.data()), bytes.data(), bytes.size());
-    if constexpr (is_doubles<T>)
+    if constexpr (kIsDoubles<T>)
       check_numbers({reinterpret_cast<const double*>(v.data()), v.size() * sizeof(T) / 8});
     return v;
   }

@@ -422,7 +422,8 @@ TEST_CASE("nodes on one place that show the same thing are levels of detail unde
 }
 
 TEST_CASE("data URIs are read") {
-  static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   Gltf g;
   std::string text;
   for (std::size_t i = 0; i < g.bin.size(); i += 3) {
