@@ -52,10 +52,11 @@ std::string describe(const LeftOut& l) {
           l.volume, percent(l.volume_share).c_str(), l.area, l.farthest);
       return text;
     case LeftOut::Reason::kGround:
-      std::snprintf(
-          text, sizeof text,
-          "%s of the surface is taken for ground and left out: is this a piece of a scene?",
-          percent(l.share).c_str());
+      std::snprintf(text, sizeof text,
+                    "%s of the surface is taken for ground and what stands about on it, and left "
+                    "out: is this "
+                    "a piece of a scene?",
+                    percent(l.share).c_str());
       return text;
     default:
       std::snprintf(text, sizeof text,

@@ -38,7 +38,9 @@ constexpr double kLeastTolerance = 0.45, kMostTolerance = 0.8;  // … between t
 constexpr double kLowRim = 0.05, kHighRoof = 0.9;  // quantiles of heights
 constexpr double kLeastRise = 2;                   // metres between them: a building
 constexpr double kRimShare = 0.35;                 // of that rise, or …
-constexpr double kRimRise = 1.5;      // … metres: what is lower at the rim is ground …
+constexpr double kRimRise = 1.5;  // … metres: what is lower at the rim is ground …
+constexpr double kHang = 1.5, kHangReach = 0.8;  // metres below a place at the rim, and around it
+constexpr double kMostHanging = 0.3;             // of a rim: more walls below make it a roof's
 constexpr double kGroundShare = 0.5;  // … as is what is reached from there, at most so high
 constexpr double kGroundSlope = 1;    // metres a metre that the ground may climb
 constexpr double kLeastFeet = 3;      // metres of wall that stand on it

@@ -34,6 +34,8 @@ std::vector<Parameter> melted_numbers() {
       {"most_tolerance", "m", relief::kMostTolerance, "likewise, where edges and noise are larger"},
       {"least_rise", "m", relief::kLeastRise, "of a building over its ground"},
       {"ground_slope", "", relief::kGroundSlope, "that the ground may climb without a wall"},
+      {"most_hanging", "", relief::kMostHanging,
+       "of the rim of what is low: walls that hang below it, which make it a roof"},
       {"strip", "m", relief::kStrip, "half the width of what is cut from next door"},
       {"thin", "m", relief::kThin, "half the width of what is no roof of its own"},
       {"slide", "", relief::kSlide, "slope of a strip that is the side of a melted wall"},

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "meshes.h"
 #include "pipeline/pipeline.h"
@@ -150,6 +151,41 @@ TEST_CASE("a low roof between higher neighbours is no ground") {
   const auto relief = find_relief(mesh);
   REQUIRE(relief);
   CHECK(relief->foot == Approx(0).margin(0.3));
+}
+
+/// Walls below the rim of a square field, at two of its sides: one quad for each of its edges.
+void hang_walls(Mesh& mesh, double side) {
+  std::map<int, int> below;
+  const auto under = [&](int v) {
+    const auto [at, is_new] = below.try_emplace(v, static_cast<int>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.emplace_back(mesh.vertices[v].x(), mesh.vertices[v].y(), 0);
+    return at->second;
+  };
+  const int n = static_cast<int>(std::lround(std::sqrt(mesh.vertices.size()))) - 1;
+  REQUIRE(mesh.vertices.front().x() < 0.1 - side / 2);
+  for (int i = 0; i < n; ++i)
+    for (const auto& [a, b] : {std::pair{i + 1, i}, std::pair{i * (n + 1), (i + 1) * (n + 1)}}) {
+      mesh.faces.push_back({a, b, under(b)});
+      mesh.faces.push_back({a, under(b), under(a)});
+    }
+}
+
+TEST_CASE("a low roof is no ground where the mesh ends at its rim and walls hang below") {
+  const double size = GENERATE(18.0, 25.0);
+  Mesh mesh = field(size, 0.15, [&](double x, double y) {
+    const double next_door = std::clamp((x - 0.35 * size) / 1.2, 0.0, 1.0);  // at one side, melted
+    return 4 + 8 * next_door + bump(x, y, 0.06);
+  });
+  hang_walls(mesh, size);
+  const auto relief = find_relief(mesh);
+  REQUIRE(relief);
+  CHECK(relief->foot == Approx(0).margin(0.3));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Vec3& v = mesh.vertices[mesh.faces[f][0]];
+    const bool is_roof =
+        v.x() > -0.45 * size && v.x() < 0.3 * size && std::abs(v.y()) < 0.45 * size;
+    if (is_roof) CHECK(!relief->is_left_out[f]);
+  }
 }
 
 TEST_CASE("what is known more exactly than its relief is none") {
