@@ -12,6 +12,7 @@
 #include "measure/light_field.h"
 #include "measure/looks.h"
 #include "measure/metrics.h"
+#include "measure/silhouettes.h"
 #include "numbers.h"
 
 namespace colod::cli {
@@ -39,6 +40,8 @@ void add_light_fields(const Source& reference, const Source& model, Json& json) 
                                                       describe_light_fields(model.mesh));
   json["light_field_distance_program"] =
       light_field_distance(describe_as_program(reference.mesh), describe_as_program(model.mesh));
+  const SilhouetteOverlap overlap = overlap_silhouettes(reference.mesh, model.mesh);
+  json["silhouette_overlap"] = {{"mean", overlap.mean}, {"worst", overlap.worst}};
 }
 
 Json read_report(const std::string& folder) {
@@ -172,8 +175,10 @@ Run add_eval(CLI::App& app) {
       ->check(number_between(1, 100000000));
   app.add_option("--seed", a->distance.seed, "of the samples")
       ->check(number_between(0.0, 9007199254740992.0));
-  app.add_flag("--lfd", a->has_lfd,
-               "also the light field distance: how alike both look from all sides, 0 = the same");
+  app.add_flag(
+      "--lfd", a->has_lfd,
+      "also the light field distance: how alike both look from all sides, 0 = the same; and how "
+      "their silhouettes overlap");
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
   return [a] { return eval(*a); };

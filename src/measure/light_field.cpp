@@ -16,6 +16,47 @@
 #include "light_field_views.h"
 
 namespace colod {
+
+namespace light_fields {
+
+std::array<Vec3, kViewCount> dodecahedron_axes() {
+  const double p = std::numbers::phi, q = 1 / std::numbers::phi;
+  std::array<Vec3, kViewCount> axes = {
+      Vec3(1, 1, 1),  Vec3(1, 1, -1), Vec3(1, -1, 1), Vec3(-1, 1, 1), Vec3(0, q, p),
+      Vec3(0, q, -p), Vec3(q, p, 0),  Vec3(q, -p, 0), Vec3(p, 0, q),  Vec3(p, 0, -q)};
+  for (Vec3& a : axes) a.normalize();
+  return axes;
+}
+
+Bounds bounds_of(const Mesh& mesh) {
+  std::vector<Vec3> used;
+  for (const Face& f : mesh.faces) {
+    const double area = face_area(mesh, f);
+    if (area > 0 && std::isfinite(area))
+      for (const int v : f) used.push_back(mesh.vertices[v]);
+  }
+  if (used.empty()) throw Error(Stage::kInput, "mesh", "no finite face with an area to look at");
+  Bounds bounds{bounding_box(used).center(), 0};
+  for (const Vec3& p : used) bounds.radius = std::max(bounds.radius, (p - bounds.center).norm());
+  return bounds;
+}
+
+Silhouette cast_silhouette(const RayScene& scene, const Bounds& bounds, const Vec3& direction) {
+  constexpr int kSize = kSilhouetteSize;
+  const auto [right, up] = plane_basis(direction);
+  const double step = 2 * bounds.radius / (kSize - 2);  // a pixel of air all around
+  const Vec3 corner =
+      bounds.center - 2 * bounds.radius * direction - 0.5 * (kSize - 1) * step * (right + up);
+  Silhouette silhouette(std::size_t{kSize} * kSize, 0);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      silhouette[y * kSize + x] =
+          scene.is_occluded(corner + step * (x * right + y * up), direction, 0, 4 * bounds.radius);
+  return silhouette;
+}
+
+}  // namespace light_fields
+
 namespace {
 
 using namespace light_fields;
@@ -24,15 +65,6 @@ using Axes = std::array<Vec3, kViewCount>;
 
 constexpr int kCandidates = 2048;  // of orientations
 constexpr int kRotations = 60;
-
-/// One unit vector of each pair of opposite vertices.
-Axes dodecahedron_axes() {
-  const double p = std::numbers::phi, q = 1 / std::numbers::phi;
-  Axes axes = {Vec3(1, 1, 1),  Vec3(1, 1, -1), Vec3(1, -1, 1), Vec3(-1, 1, 1), Vec3(0, q, p),
-               Vec3(0, q, -p), Vec3(q, p, 0),  Vec3(q, -p, 0), Vec3(p, 0, q),  Vec3(p, 0, -q)};
-  for (Vec3& a : axes) a.normalize();
-  return axes;
-}
 
 /// The frame whose first axis is a and whose second lies in the plane of a and b, towards b.
 Eigen::Matrix3d frame_of(const Vec3& a, const Vec3& b) {
@@ -79,39 +111,6 @@ std::vector<Eigen::Matrix3d> spread_orientations() {
         closest[c] = std::max(closest[c], std::abs((candidates[next] * g).dot(candidates[c])));
     next = std::min_element(closest.begin(), closest.end()) - closest.begin();
   }
-}
-
-/// What every view frames: a sphere around the finite faces with an area.
-struct Bounds {
-  Vec3 center = Vec3::Zero();
-  double radius = 0;
-};
-
-Bounds bounds_of(const Mesh& mesh) {
-  std::vector<Vec3> used;
-  for (const Face& f : mesh.faces) {
-    const double area = face_area(mesh, f);
-    if (area > 0 && std::isfinite(area))
-      for (const int v : f) used.push_back(mesh.vertices[v]);
-  }
-  if (used.empty()) throw Error(Stage::kInput, "mesh", "no finite face with an area to look at");
-  Bounds bounds{bounding_box(used).center(), 0};
-  for (const Vec3& p : used) bounds.radius = std::max(bounds.radius, (p - bounds.center).norm());
-  return bounds;
-}
-
-Silhouette cast_silhouette(const RayScene& scene, const Bounds& bounds, const Vec3& direction) {
-  constexpr int kSize = kSilhouetteSize;
-  const auto [right, up] = plane_basis(direction);
-  const double step = 2 * bounds.radius / (kSize - 2);  // a pixel of air all around
-  const Vec3 corner =
-      bounds.center - 2 * bounds.radius * direction - 0.5 * (kSize - 1) * step * (right + up);
-  Silhouette silhouette(std::size_t{kSize} * kSize, 0);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      silhouette[y * kSize + x] =
-          scene.is_occluded(corner + step * (x * right + y * up), direction, 0, 4 * bounds.radius);
-  return silhouette;
 }
 
 std::uint8_t quantized(double value) {

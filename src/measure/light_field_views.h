@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/rays.h"
 #include "light_field.h"
 
 namespace colod::light_fields {
@@ -14,6 +15,19 @@ struct Pixel {
   int x, y;
   bool operator==(const Pixel&) const = default;
 };
+
+/// What every view frames: a sphere.
+struct Bounds {
+  Vec3 center = Vec3::Zero();
+  double radius = 0;
+};
+
+/// Around the finite faces with an area; throws as describe_light_fields.
+Bounds bounds_of(const Mesh& mesh);
+/// What covers the frame, seen along a unit direction, orthographically.
+Silhouette cast_silhouette(const RayScene& scene, const Bounds& bounds, const Vec3& direction);
+/// One unit vector of each pair of opposite vertices of the upright dodecahedron.
+std::array<Vec3, kViewCount> dodecahedron_axes();
 
 /// All silhouettes of a model, the views of each light field together. Throws as
 /// describe_light_fields.

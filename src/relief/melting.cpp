@@ -14,6 +14,7 @@
 #include <map>
 #include <vector>
 
+#include "core/drawn.h"
 #include "core/flat.h"
 #include "parameters.h"
 
@@ -54,16 +55,6 @@ double mean_lean(const std::vector<Side>& sides) {
   for (const Side& s : sides)
     if (std::abs(s.normal.z()) < kSteepest) walls += s.area, sum += s.area * s.normal.z();
   return walls > 0 ? sum / walls : 0;
-}
-
-double exact_share(const std::vector<Side>& sides) {
-  double total = 0, exact = 0;
-  for (const Side& s : sides) {
-    const double z = std::abs(s.normal.z());
-    total += s.area;
-    if (z < kExactTurn || s.normal.head<2>().norm() < kExactTurn) exact += s.area;
-  }
-  return exact / total;
 }
 
 /// Faces by where they are, in cubes.
@@ -147,7 +138,7 @@ bool Melting::is_coarse() const {
   return bulge > kCoarseBulge && std::max(edge, kToldBulges * bulge) > kCoarse;
 }
 bool Melting::is_melted() const {
-  return bulge > kExactBulge && exact < kMostExact && (is_leaning() || is_coarse());
+  return bulge > kExactBulge && drawn < kLeastDrawn && (is_leaning() || is_coarse());
 }
 double Melting::reach() const {
   return std::max({kLeastReach, kReachBulges * bulge, kReachEdges * edge});
@@ -157,7 +148,7 @@ Melting measure_melting(const Mesh& mesh) {
   const std::vector<Side> sides = sides_of(mesh);
   if (sides.empty()) return {};
   const double edge = median_edge(mesh);
-  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides), exact_share(sides)};
+  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides), drawn_share(mesh)};
 }
 
 }  // namespace colod::relief

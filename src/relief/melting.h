@@ -9,7 +9,7 @@ struct Melting {
   double edge = 0;   ///< metres: median edge
   double bulge = 0;  ///< metres: residual of a piece of wall or roof as wide as a window
   double lean = 0;   ///< z of the walls' outward normals, their mean: noise leans both ways
-  double exact = 0;  ///< 0..1 of the area: upright or level to the last digit, as people draw
+  double drawn = 0;  ///< 0..1 of the area: as people draw (core/drawn.h)
 
   /// Walls lean outward: drawn from heights, or from pictures that were taken from above.
   bool is_leaning() const;

@@ -13,16 +13,15 @@ constexpr double kNoiseQuantile = 0.35;  // of such places: the others have edge
 constexpr int kSamples = 500;
 
 // Whether a mesh is melted.
-constexpr double kSteepFace = 0.6;                     // |z| of a normal: steeper is a wall's
-constexpr double kWindow = 1.5, kWindowEdges = 1.5;    // metres, or median edges around a face
-constexpr int kLeastSides = 8;                         // faces there
-constexpr std::size_t kMostSides = 400;                // of a cube of that size, that are looked at
-constexpr double kAlike = 0.5;                         // cosine between their normals
-constexpr double kExactBulge = 0.003;                  // metres: less is exact, or nearly so
-constexpr double kSteepest = 0.4, kLeastLean = 0.04;   // |z| of walls' normals, and its mean
-constexpr double kExactTurn = 1e-4, kMostExact = 0.3;  // sine; share of the area
-constexpr double kCoarseBulge = 0.08;                  // metres, and …
-constexpr double kCoarse = 0.6, kToldBulges = 4;       // … metres of edge, or of so many bulges
+constexpr double kSteepFace = 0.6;                    // |z| of a normal: steeper is a wall's
+constexpr double kWindow = 1.5, kWindowEdges = 1.5;   // metres, or median edges around a face
+constexpr int kLeastSides = 8;                        // faces there
+constexpr std::size_t kMostSides = 400;               // of a cube of that size, that are looked at
+constexpr double kAlike = 0.5;                        // cosine between their normals
+constexpr double kExactBulge = 0.003;                 // metres: less is exact, or nearly so
+constexpr double kSteepest = 0.4, kLeastLean = 0.04;  // |z| of walls' normals, and its mean
+constexpr double kCoarseBulge = 0.08;                 // metres, and …
+constexpr double kCoarse = 0.6, kToldBulges = 4;      // … metres of edge, or of so many bulges
 constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
 constexpr double kLeastSupport = 0.1;  // of the walls that are drawn: seen, in part
 constexpr double kExplained = 0.7;     // of the surface: near roofs and walls

@@ -1,4 +1,5 @@
 // The row of what is melted.
+#include "core/drawn.h"
 #include "parts.h"
 #include "relief/parameters.h"
 
@@ -17,7 +18,7 @@ std::vector<Parameter> melted_numbers() {
       {"coarse_bulge", "m", relief::kCoarseBulge,
        "of meshes whose walls do not lean: scans from the street have 0.024, sparse ones 0.07"},
       {"coarse", "m", relief::kCoarse, "median edge, or four bulges: windows cannot be told"},
-      {"most_exact", "", relief::kMostExact,
+      {"least_drawn", "", kLeastDrawn,
        "share of the surface that is upright or level to the last digit: what people draw"},
       {"least_support", "", relief::kLeastSupport,
        "of the walls that are drawn, in faces of the mesh: terrain has no walls"},

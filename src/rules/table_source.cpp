@@ -1,6 +1,7 @@
 // The rows of what is parted from a source before planes are sought.
 #include <numbers>
 
+#include "core/drawn.h"
 #include "parts.h"
 #include "planes/parameters.h"
 #include "rounds/parameters.h"
@@ -80,8 +81,14 @@ RuleInfo hidden_rule() {
             "of a cavity's walls that are open: a porch of 2 by 2 by 4 m has 0.11, rooms 0.02 to "
             "0.05, a shop without its front 0.07"},
            {"least_hidden", "", hidden::kLeastHidden, "of the area: less is a fold, no inside"},
+           {"least_hidden_drawn", "", hidden::kLeastHiddenDrawn,
+            "likewise, of what people draw: parts sunk into others"},
+           {"least_drawn", "", kLeastDrawn,
+            "share of the surface that is upright or level to the last digit: what people draw"},
            {"gate_samples", "", hidden::kGateSamples, "points that decide whether to look closer"},
-           {"sample_area", "m²", hidden::kSampleArea, "that a point of a face stands for"},
+           {"sample_area", "m²", hidden::kSampleArea,
+            "that a point of a face stands for: of 0.25, all of a chimney's face lay below the "
+            "roof that its tip stands over"},
            {"most_samples", "", hidden::kMostSamples, "points of a face"},
            {"rays", "", hidden::kRays, "of a point, over the sphere"},
            {"seen", "", hidden::kSeen, "rays that see it: one may slip through a seam"},

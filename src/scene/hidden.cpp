@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/drawn.h"
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "core/spread.h"
@@ -313,19 +314,23 @@ void drop_faces(const std::vector<char>& is_dropped, Source& source) {
 Source remove_hidden(Source source) {
   if (!source.is_mesh()) return source;
   const Lookout lookout(source.mesh);
-  if (lookout.hidden_share(source.mesh) < kLeastHidden) return source;
+  const double least = drawn_share(source.mesh) < kLeastDrawn ? kLeastHidden : kLeastHiddenDrawn;
+  if (lookout.hidden_share(source.mesh) < least) return source;
   cut_half_seen(seen_shares(lookout, source.mesh), source);
   std::vector<char> is_hidden;
   for (const double share : seen_shares(lookout, source.mesh))
     is_hidden.push_back(share < kMostlySeen);
   const LeftOut out =
       measure_left_out(source, is_hidden, LeftOut::Reason::kInside, source.left_out);
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "left out %.0f m2 of surface that nobody sees from outside (%.0f %% of the input): "
-                "--rules paper keeps it",
-                out.area, 100 * out.share);
-  source.warnings.push_back(text);
+  if (out.share >= kLeastHidden) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "left out %.0f m2 of surface that nobody sees from outside (%.0f %% of the input): "
+        "--rules paper keeps it",
+        out.area, 100 * out.share);
+    source.warnings.push_back(text);
+  }
   source.left_out.push_back(out);
   drop_faces(is_hidden, source);
   return source;

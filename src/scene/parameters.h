@@ -32,13 +32,14 @@ constexpr double kDepth = 0.2;         // metres, and two voxels: from reveals t
 // 4 m deep: 0.11), rooms less (0.02 to 0.05; a shop without its front 0.07).
 constexpr double kOpenShare = 0.08;
 constexpr double kMostVoxels = 4e6;    // of them: larger buildings get larger voxels
-constexpr double kLeastHidden = 0.02;  // of the area: what is less is a fold, not an inside
-constexpr int kGateSamples = 4000;     // over the whole surface, to begin with
-constexpr double kSampleArea = 0.25;   // m² that a sample stands for
-constexpr int kMostSamples = 64;       // of a face
-constexpr int kRays = 64;              // of a sample, over the sphere
-constexpr int kSeen = 2;               // of its rays: one may slip through a seam
-constexpr double kLift = 0.002;        // metres off the face that rays start
-constexpr double kMostlySeen = 0.5;    // of a piece's samples
+constexpr double kLeastHidden = 0.02;  // of the area: what is less is a fold of what was measured …
+constexpr double kLeastHiddenDrawn = 0.001;  // … or, of what people draw, an error of the samples
+constexpr int kGateSamples = 4000;           // over the whole surface, to begin with
+constexpr double kSampleArea = 0.06;  // m² that a sample stands for: few miss a face's visible tip
+constexpr int kMostSamples = 64;      // of a face
+constexpr int kRays = 64;             // of a sample, over the sphere
+constexpr int kSeen = 2;              // of its rays: one may slip through a seam
+constexpr double kLift = 0.002;       // metres off the face that rays start
+constexpr double kMostlySeen = 0.5;   // of a piece's samples
 
 }  // namespace colod::parameters::hidden

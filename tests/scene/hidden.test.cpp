@@ -132,6 +132,18 @@ TEST_CASE("bodies that run through each other are cut where they meet") {
   }
 }
 
+TEST_CASE("of what people draw a small part's sunken end is left out, too") {
+  const double size = GENERATE(0.5, 0.8, 1.2);  // of a chimney on a hall: 0.3 to 0.9 % are sunk
+  const Mesh hall = box_mesh({0, 0, 0}, {24, 16, 8});
+  const Mesh chimney = box_mesh({11, 7, 5}, {11 + size, 7 + size, 10});
+  const Source s = shell_of(test::join(hall, chimney));
+  REQUIRE(s.left_out.size() == 1);
+  CHECK(s.left_out[0].share < 0.02);
+  CHECK(s.warnings.empty());  // it stands in the report
+  CHECK(area_within(s.mesh, {{10, 6, 4}, {13, 9, 7.9}}) == 0);
+  CHECK(area_within(s.mesh, {{10, 6, 8.05}, {13, 9, 11}}) == Approx(8 * size + size * size));
+}
+
 TEST_CASE("rooms behind open windows are left out, at every size") {
   for (const int count : {2, 4, 12})
     for (const double width : {0.9, 1.6, 2.2}) {
