@@ -15,6 +15,8 @@ install(FILES ${manual}/_colod DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-c
 install(FILES ${manual}/colod.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/viewer/ DESTINATION ${CMAKE_INSTALL_DATADIR}/colod/viewer COMPONENT program OPTIONAL)
 
+install(DIRECTORY workflow/ DESTINATION ${CMAKE_INSTALL_DATADIR}/colod/workflow COMPONENT program USE_SOURCE_PERMISSIONS)
+
 install(TARGETS colod_library EXPORT colodTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(FILES include/colod/colod.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/colod COMPONENT development)

@@ -10,6 +10,7 @@ namespace colod::cli {
 using Run = std::function<int()>;
 
 Run add_build(CLI::App& app);
+Run add_plan(CLI::App& app);
 Run add_segment(CLI::App& app);
 Run add_analyze(CLI::App& app);
 Run add_mesh(CLI::App& app);

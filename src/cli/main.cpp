@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
     commands.emplace_back(command, make(*command));
   };
   add("build", "buildings in, LOD chains and a 3D Tiles tileset out", colod::cli::add_build);
+  add("plan", "a scene in cells, which segment and mesh can work on apart", colod::cli::add_plan);
   add("segment", "stage 1 of build: sources to a scene file", colod::cli::add_segment);
   add("analyze", "stage 2: the layers of all segments of one or several scene files",
       colod::cli::add_analyze);

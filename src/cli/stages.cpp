@@ -17,6 +17,8 @@
 #include "numbers.h"
 #include "output.h"
 #include "pipeline_options.h"
+#include "plan/cell_lock.h"
+#include "plan_options.h"
 #include "publish/report_pictures.h"
 #include "store/store.h"
 
@@ -25,6 +27,7 @@ namespace {
 
 struct StageArguments {
   std::vector<std::string> inputs;  ///< sources (segment) or scene files
+  PlanArguments plan;               ///< instead of inputs
   std::string scene;                ///< the scene file that segment writes
   std::string prior;                ///< an analysed scene file, or empty
   double gap = -1;                  ///< analyze: instead of the scene file's; negative: not given
@@ -34,54 +37,106 @@ struct StageArguments {
   RunArguments run;
 };
 
-int segment(const StageArguments& a) {
-  validate(a.options);
-  limit_threads(a.run.threads);
-  const Log log = a.run.log();
-  const Inventory inventory = take_inventory(a.inputs, a.read);
-  check_cost(a.options, inventory.building_count());
-  Scene problems;
-  problems.failures = inventory.failures;
-  problems.warnings = inventory.warnings;
-  problems.buildings.resize(inventory.building_count());
-  Store store(a.scene, true);
-  store.put_options(a.options);
+std::vector<std::string> names_of(const Inventory& inventory) {
+  std::vector<std::string> names;
+  for (const InputFile& file : inventory.files)
+    names.insert(names.end(), file.names.begin(), file.names.end());
+  return names;
+}
+
+/// A cell whose run was broken off, or never began, must not pass for a smaller one.
+void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cell) {
+  const std::string path = cell_scene(plan_path, cell);
+  const std::vector<std::string> names = names_of(inventory_of(plan, cell));
+  std::size_t there = 0;
+  if (std::filesystem::exists(path)) {
+    const Store store(path, false);
+    for (const std::string& name : names) there += !store.segments_key(name).empty();
+    if (there == names.size() && store.names().size() == names.size()) return;
+  }
+  throw Error(Stage::kInput, path,
+              "has " + std::to_string(there) + " of the " + std::to_string(names.size()) +
+                  " buildings that it is to have: run colod segment --plan " + plan_path +
+                  " --shard " + std::to_string(cell) + "/" + std::to_string(plan.cells.size()));
+}
+
+/// Does what of the inventory is not yet in the scene file; what went wrong is added to `problems`.
+void segment_into(Store& store, const Inventory& inventory, const ReadOptions& options,
+                  const Options& pipeline, const Log& log, Scene& problems) {
+  store.put_options(pipeline);
+  const std::size_t before = problems.buildings.size();
+  problems.buildings.resize(before + inventory.building_count());
   std::mutex mutex;
   int done = 0;
-  const auto read = [&](std::size_t file) { return read_file(inventory.files[file], a.read); };
+  const auto read = [&](std::size_t file) { return read_file(inventory.files[file], options); };
   for_each_source(inventory, read, [&](Turn turn) {
     const std::size_t position = turn.position;
-    const std::string name = turn.source.name, key = segments_key(turn.source, a.options);
+    const std::string name = turn.source.name, key = segments_key(turn.source, pipeline);
     bool is_there;
     {
       const std::lock_guard lock(mutex);
       is_there = !turn.problem && store.segments_key(name) == key;
     }
     Building b;
-    if (!is_there) b = segment_building(std::move(turn), a.options);
+    if (!is_there) b = segment_building(std::move(turn), pipeline);
     const std::lock_guard lock(mutex);
     if (!is_there) store.put_segments(b, static_cast<int>(position), key);
     log.progress(name, is_there ? "already there" : "segments", ++done,
-                 static_cast<int>(problems.buildings.size()));
-    Building& problem = problems.buildings[position];
+                 static_cast<int>(inventory.building_count()));
+    Building& problem = problems.buildings[before + position];
     problem.source.name = name;
     problem.failure = b.failure;
     problem.warnings = b.warnings;
   });
+}
+
+/// The cells of this run's shard, each into its own scene file.
+void segment_cells(const StageArguments& a, const Log& log, Scene& problems) {
+  const Plan plan = read_plan(a.plan.path);
+  check_cost(plan.options, plan.building_count());
+  for (const std::size_t cell :
+       cells_of(shard_of(a.plan.shard, plan.cells.size()), plan.cells.size())) {
+    const Inventory inventory = inventory_of(plan, cell);
+    const std::string path = cell_scene(a.plan.path, cell);
+    const CellLock lock(path);
+    Store store(path, true);
+    store.keep_only(names_of(inventory));
+    segment_into(store, inventory, plan.read, plan.options, log, problems);
+  }
+}
+
+int segment(const StageArguments& a) {
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  Scene problems;
+  if (!a.plan.path.empty()) {
+    segment_cells(a, log, problems);
+  } else {
+    validate(a.options);
+    const Inventory inventory = take_inventory(a.inputs, a.read);
+    check_cost(a.options, inventory.building_count());
+    problems.failures = inventory.failures;
+    problems.warnings = inventory.warnings;
+    Store store(a.scene, true);
+    segment_into(store, inventory, a.read, a.options, log, problems);
+  }
   log_problems(problems, log);
   return exit_code(problems);
 }
 
 /// All buildings of several scene files without their geometry, so that memory does not follow the
-/// sources; `file_of[i]` tells where building i came from.
+/// sources, by name, as one run would have them; `file_of[i]` tells where building i came from.
 Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of) {
-  Scene scene;
+  std::vector<std::pair<std::string, std::size_t>> order;
   for (std::size_t f = 0; f < stores.size(); ++f)
-    for (const std::string& name : stores[f].names()) {
-      scene.buildings.push_back(stores[f].building(name));
-      drop_geometry(scene.buildings.back());
-      file_of.push_back(f);
-    }
+    for (const std::string& name : stores[f].names()) order.emplace_back(name, f);
+  std::sort(order.begin(), order.end());
+  Scene scene;
+  for (const auto& [name, f] : order) {
+    scene.buildings.push_back(stores[f].building(name));
+    drop_geometry(scene.buildings.back());
+    file_of.push_back(f);
+  }
   if (scene.buildings.empty())
     throw Error(Stage::kInput, "scene", "holds no building: run colod segment first");
   return scene;
@@ -128,10 +183,26 @@ void check_exportable(const Scene& scene) {
   }
 }
 
+/// The scene files that are named, or all cells of the plan, each with all that it is to hold.
+std::vector<std::string> scene_files(const StageArguments& a) {
+  if (a.plan.path.empty()) return a.inputs;
+  const Plan plan = read_plan(a.plan.path);
+  std::vector<std::string> files;
+  for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
+    files.push_back(cell_scene(a.plan.path, cell));
+    check_whole(plan, a.plan.path, cell);
+  }
+  return files;
+}
+
 int analyze(const StageArguments& a) {
   limit_threads(a.run.threads);
-  std::vector<Store> stores = open_all(a.inputs);
-  check_same_rules(stores, a.inputs);
+  const std::vector<std::string> files = scene_files(a);
+  std::vector<std::unique_ptr<CellLock>> locks;
+  if (!a.plan.path.empty())
+    for (const std::string& file : files) locks.push_back(std::make_unique<CellLock>(file));
+  std::vector<Store> stores = open_all(files);
+  check_same_rules(stores, files);
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   Options options = stores.front().options();
@@ -144,33 +215,48 @@ int analyze(const StageArguments& a) {
   return 0;
 }
 
+/// One scene file's buildings; what went wrong is added to `problems`.
+void mesh_scene(Store& store, const Log& log, Scene& problems) {
+  store.check_rules();
+  const Options options = store.options();
+  store.get_coanalysis(problems);
+  const std::vector<std::string> names = store.names();
+  check_analysed(store, names);
+  std::mutex mutex;
+  int done = 0;
+  parallel_for(names.size(), [&](std::size_t i) {
+    Building b;
+    {
+      const std::lock_guard lock(mutex);
+      if (store.has_meshes(names[i])) return;
+      b = store.building(names[i]);
+    }
+    mesh_building(b, options);
+    const std::lock_guard lock(mutex);
+    store.put_meshes(b);
+    log.progress(names[i], "layers", ++done, static_cast<int>(names.size()));
+  });
+  for (const std::string& name : names) {
+    problems.buildings.push_back(store.building(name));
+    drop_geometry(problems.buildings.back());
+  }
+}
+
 int mesh(const StageArguments& a) {
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   Scene problems;
-  for (Store& store : open_all(a.inputs)) {
-    store.check_rules();
-    const Options options = store.options();
-    store.get_coanalysis(problems);
-    const std::vector<std::string> names = store.names();
-    check_analysed(store, names);
-    std::mutex mutex;
-    int done = 0;
-    parallel_for(names.size(), [&](std::size_t i) {
-      Building b;
-      {
-        const std::lock_guard lock(mutex);
-        if (store.has_meshes(names[i])) return;
-        b = store.building(names[i]);
-      }
-      mesh_building(b, options);
-      const std::lock_guard lock(mutex);
-      store.put_meshes(b);
-      log.progress(names[i], "layers", ++done, static_cast<int>(names.size()));
-    });
-    for (const std::string& name : names) {
-      problems.buildings.push_back(store.building(name));
-      drop_geometry(problems.buildings.back());
+  if (a.plan.path.empty()) {
+    for (Store& store : open_all(a.inputs)) mesh_scene(store, log, problems);
+  } else {
+    const Plan plan = read_plan(a.plan.path);
+    const std::size_t cells = plan.cells.size();
+    for (const std::size_t cell : cells_of(shard_of(a.plan.shard, cells), cells)) {
+      const std::string path = cell_scene(a.plan.path, cell);
+      const CellLock lock(path);
+      check_whole(plan, a.plan.path, cell);
+      Store store(path, false);
+      mesh_scene(store, log, problems);
     }
   }
   log_problems(problems, log);
@@ -207,10 +293,15 @@ int export_files(const StageArguments& a) {
   check_place(a.output.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  std::vector<Store> stores = open_all(a.inputs);
+  std::vector<Store> stores = open_all(scene_files(a));
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   stores.front().get_coanalysis(scene);
+  if (!a.plan.path.empty()) {
+    Plan plan = read_plan(a.plan.path);
+    scene.failures = std::move(plan.failures);
+    scene.warnings = std::move(plan.warnings);
+  }
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
@@ -228,11 +319,31 @@ int export_files(const StageArguments& a) {
   return write_all(scene, options, start, gallery.take(scene), sources, a.output, log);
 }
 
-std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
+/// What a stage works on: what is named, or a plan.
+void check_named(const StageArguments& a, const char* what) {
+  if (a.inputs.empty() == a.plan.path.empty())
+    throw Error(Stage::kUsage, what, "name some, or --plan, and not both");
+  if (a.plan.path.empty() && !a.plan.shard.empty())
+    throw Error(Stage::kUsage, "--shard", "is a part of a plan: name --plan, too");
+}
+
+std::shared_ptr<StageArguments> add_scene_files(CLI::App& app, bool is_sharded) {
   auto a = std::make_shared<StageArguments>();
-  app.add_option("SCENE", a->inputs, "scene files (.colod)")->required();
+  app.add_option("SCENE", a->inputs, "scene files (.colod)");
+  add_plan_options(app, a->plan, is_sharded);
   add_run_options(app, a->run);
   return a;
+}
+
+/// Options that segments depend on are the plan's.
+void refuse_options_of_plan(const CLI::App& app) {
+  for (const CLI::Option* o : app.get_options()) {
+    const std::string name = o->get_name();
+    const bool is_own = name == "--plan" || name == "--shard" || name == "--threads" ||
+                        name == "--quiet" || name == "--log-json" || name == "--config";
+    if (o->count() > 0 && !is_own)
+      throw Error(Stage::kUsage, name, "stands in the plan: give it to colod plan");
+  }
 }
 
 }  // namespace
@@ -240,13 +351,19 @@ std::shared_ptr<StageArguments> add_scene_files(CLI::App& app) {
 Run add_segment(CLI::App& app) {
   auto a = std::make_shared<StageArguments>();
   add_config_option(app);
-  app.add_option("INPUT", a->inputs, "files and folders with buildings")->required();
-  app.add_option("-o,--out", a->scene, "scene file to write or go on with")->required();
+  app.add_option("INPUT", a->inputs, "files and folders with buildings");
+  app.add_option("-o,--out", a->scene, "scene file to write or go on with; not with --plan");
+  add_plan_options(app, a->plan, true);
   add_input_options(app, a->read);
   add_folder_options(app, a->read);
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
-  return [a] {
+  return [a, &app] {
+    check_named(*a, "INPUT");
+    if (!a->plan.path.empty())
+      refuse_options_of_plan(app);
+    else if (a->scene.empty())
+      throw Error(Stage::kUsage, "--out", "is missing: the scene file to write");
     const Log log = a->run.log();
     switch_off_dependents(a->options, [&](const Message& m) { log.message(m); });
     return segment(*a);
@@ -254,25 +371,34 @@ Run add_segment(CLI::App& app) {
 }
 
 Run add_analyze(CLI::App& app) {
-  auto a = add_scene_files(app);
+  auto a = add_scene_files(app, false);
   add_prior_option(app, a->prior);
   app.add_option("--gap", a->gap, "layer 0 is good enough when proven to be this near to the best")
       ->check(number_between(0.0, 1.0));
-  return [a] { return analyze(*a); };
+  return [a] {
+    check_named(*a, "SCENE");
+    return analyze(*a);
+  };
 }
 
 Run add_mesh(CLI::App& app) {
-  auto a = add_scene_files(app);
-  return [a] { return mesh(*a); };
+  auto a = add_scene_files(app, true);
+  return [a] {
+    check_named(*a, "SCENE");
+    return mesh(*a);
+  };
 }
 
 Run add_export(CLI::App& app) {
-  auto a = add_scene_files(app);
+  auto a = add_scene_files(app, false);
   app.add_option("--prior", a->prior,
                  "a scene file with meshes: its buildings decide where all layers switch")
       ->check(CLI::ExistingFile);
   add_output_arguments(app, a->output);
-  return [a] { return export_files(*a); };
+  return [a] {
+    check_named(*a, "SCENE");
+    return export_files(*a);
+  };
 }
 
 }  // namespace colod::cli

@@ -9,6 +9,10 @@
 
 #include <sqlite3.h>
 
+#include <set>
+
+#include "core/hash.h"
+#include "options_text.h"
 #include "parts.h"
 #include "rules/rules.h"
 
@@ -39,51 +43,6 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
   segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
   facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, looks TEXT NOT NULL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
 )sql";
-
-Json options_json(const Options& o) {
-  Json json{{"rules", o.rules.is_none() ? "paper" : "robust"},
-            {"visibility", name_of(o.visibility)},
-            {"layering", o.is_size_layering ? "size" : "spectral"}};
-  if (!o.rules.is_none() && !o.rules.is_all()) json["without"] = ids_off(o.rules);
-  for (const OptionInfo& info : option_table()) json[info.name] = info.get(o);
-  return json;
-}
-
-RuleSet rules_of(const Json& json, const std::string& path) {
-  if (json.value("rules", "robust") == "paper") return RuleSet::none();
-  RuleSet rules = RuleSet::all();
-  for (const std::string& id : json.value("without", std::vector<std::string>{}))
-    rules = rules.without(rule_named(id, path));
-  return rules;
-}
-
-/// FNV-1a, 64 bits, of any bytes; two lanes make accidental equality as unlikely as needed for "did
-/// the input change".
-class Hash {
- public:
-  void add(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i) {
-      a_ = (a_ ^ bytes[i]) * 1099511628211ULL;
-      b_ = (b_ ^ bytes[i]) * 6364136223846793005ULL + 1442695040888963407ULL;
-    }
-  }
-  template <typename T>
-  void add(const std::vector<T>& v) {
-    const std::size_t size = v.size();
-    add(&size, sizeof size);
-    add(v.data(), v.size() * sizeof(T));
-  }
-  std::string hex() const {
-    char text[33];
-    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(a_),
-                  static_cast<unsigned long long>(b_));
-    return text;
-  }
-
- private:
-  std::uint64_t a_ = 14695981039346656037ULL, b_ = 88172645463325252ULL;
-};
 
 }  // namespace
 
@@ -163,7 +122,7 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 
 void Store::put_options(const Options& options) {
-  const std::string text = options_json(options).dump();
+  const std::string text = options_text(options);
   Statement old = impl_->read("SELECT value FROM meta WHERE key = 'options'");
   const bool is_there = old.step(), has_same_rules = impl_->has_these_rules();
   if (is_there && old.text() == text && has_same_rules) return;
@@ -197,19 +156,16 @@ Options Store::options() const {
   Statement s = impl_->read("SELECT value FROM meta WHERE key = 'options'");
   if (!s.step())
     throw Error(Stage::kInput, impl_->path, "holds no options: colod segment has not finished");
-  Options options;
-  read_json(s.text(), impl_->path, "options", [&](const Json& json) {
-    options.rules = rules_of(json, impl_->path);
-    options.visibility = visibility_of(json.value("visibility", "embree"));
-    options.is_size_layering = json.value("layering", "spectral") == "size";
-    for (const OptionInfo& info : option_table()) {
-      const double value = json.value(info.name, info.get(options));
-      if (!(value >= info.min && value <= info.max))
-        throw Error(Stage::kInput, impl_->path, "damaged: its option " + info.name + " is wild");
-      info.set(options, value);
-    }
+  return options_of(s.text(), impl_->path);
+}
+
+void Store::keep_only(const std::vector<std::string>& names) {
+  const std::set<std::string> kept(names.begin(), names.end());
+  impl_->transaction([&] {
+    for (const std::string& name : this->names())
+      if (!kept.contains(name))
+        impl_->write("DELETE FROM building WHERE name = ?1").bind(name).run();
   });
-  return options;
 }
 
 std::vector<std::string> Store::names() const {
@@ -405,7 +361,7 @@ std::string segments_key(const Source& source, const Options& options) {
   relevant.is_size_layering = defaults.is_size_layering;
   for (const RuleInfo& info : rule_table())
     if (info.rule > kLastOfSegments) relevant.rules = relevant.rules.with(info.rule);
-  const std::string text = rules_version() + options_json(relevant).dump();
+  const std::string text = rules_version() + options_text(relevant);
   hash.add(text.data(), text.size());
   return hash.hex();
 }

@@ -32,6 +32,9 @@ class Store {
   /// others: what it holds is not what this one would make.
   void check_rules() const;
 
+  /// Buildings with other names go away.
+  void keep_only(const std::vector<std::string>& names);
+
   /// Names of all buildings, in the order of the input.
   std::vector<std::string> names() const;
 

@@ -148,6 +148,49 @@ TEST_CASE("kill -9 at any point of segment and mesh: the rest is done, the bytes
   CHECK(files > 20);
 }
 
+TEST_CASE("a plan's cells want all their buildings, and say which run brings them") {
+  Folder f;
+  fs::create_directories(f / "in");
+  for (int i = 0; i < 6; ++i)
+    write_off(f.path() / "in" / ("h" + std::to_string(i) + ".off"), house(i));
+  const std::string plan = f / "w/plan.json", log = f / "log";
+  REQUIRE(run({"plan", f / "in", "-o", plan, "--cells", "3", "--ns", "10", "--nr", "12"}, log));
+  CHECK_FALSE(run({"analyze", "--plan", plan}, log));
+  CHECK(count_of(slurp(log), "0 of the 2 buildings") == 1);
+  REQUIRE(run({"segment", "--plan", plan, "--shard", "0/2"}, log));
+  CHECK_FALSE(run({"analyze", "--plan", plan}, log));
+  CHECK(count_of(slurp(log), "--shard 1/3") == 1);
+  REQUIRE(run({"segment", "--plan", plan, "--shard", "1/2"}, log));
+  REQUIRE(run({"analyze", "--plan", plan}, log));
+  REQUIRE(run({"mesh", "--plan", plan}, log));
+  REQUIRE(run({"export", "--plan", plan, "-o", f / "out", "--quiet"}, log));
+
+  // A building goes: its cell alone lets it go, and the others' meshes stay.
+  fs::remove(f.path() / "in" / "h3.off");
+  REQUIRE(run({"plan", f / "in", "-o", plan, "--cells", "3", "--ns", "10", "--nr", "12"}, log));
+  CHECK_FALSE(run({"export", "--plan", plan, "-o", f / "out", "--quiet"}, log));
+  CHECK(count_of(slurp(log), "run colod segment --plan") == 1);
+  REQUIRE(run({"segment", "--plan", plan}, log));
+  REQUIRE(run({"analyze", "--plan", plan}, log));
+  REQUIRE(run({"mesh", "--plan", plan, "--log-json"}, log));
+  REQUIRE(run({"export", "--plan", plan, "-o", f / "fewer", "--quiet"}, log));
+  CHECK(!fs::exists(f.path() / "fewer/buildings/h3.glb"));
+  REQUIRE(run({"build", f / "in", "-o", f / "whole", "--ns", "10", "--nr", "12", "--quiet"}, log));
+  for (const char* file : {"tileset.json", "buildings/h0.glb", "buildings/h5.glb"})
+    CHECK(slurp(f.path() / "fewer" / file) == slurp(f.path() / "whole" / file));
+
+  // A scene file that was cut off, and options that stand in the plan.
+  fs::resize_file(f / "w/cell-0001.colod", 3000);
+  CHECK_FALSE(run({"mesh", "--plan", plan}, log));
+  CHECK(count_of(slurp(log), "cell-0001.colod") >= 1);
+  CHECK_FALSE(run({"segment", "--plan", plan, "--ns", "20"}, log));
+  CHECK(count_of(slurp(log), "--ns: stands in the plan") == 1);
+  CHECK_FALSE(run({"segment", "--plan", plan, f / "in"}, log));
+  CHECK_FALSE(run({"segment", "--shard", "0/2", f / "in", "-o", f / "x.colod"}, log));
+  CHECK_FALSE(run({"segment", "--plan", plan, "--shard", "3/3"}, log));
+  CHECK(count_of(slurp(log), "3/3") == 1);
+}
+
 TEST_CASE("a prior gives a single building the layers of a city, in build and in stages") {
   Folder f;
   fs::create_directories(f / "city");
