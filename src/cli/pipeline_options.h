@@ -81,7 +81,9 @@ inline void add_pipeline_options(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--visibility",
          [&options](const std::string& v) { options.visibility = visibility_of(v); },
-         "what casts the rays: embree (default), or sweep, the same hits several times faster")
+         "what casts the rays: sweep (default), which asks Embree where it is in doubt, or embree "
+         "for "
+         "all of them (default with --rules paper): the same hits in several times the time")
       ->check(CLI::IsMember({"embree", "sweep"}));
   app.add_option_function<std::string>(
          "--layering", [&options](const std::string& v) { options.is_size_layering = v == "size"; },

@@ -63,7 +63,7 @@ Visibility visibility_of(const std::string& name) {
 Options default_options(const RuleSet& rules) {
   Options options;
   options.rules = rules;
-  if (rules.is_none()) options.ns = 150;
+  if (rules.is_none()) options.ns = 150, options.visibility = Visibility::kEmbree;
   return options;
 }
 

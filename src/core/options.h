@@ -12,7 +12,8 @@
 namespace colod {
 
 /// What finds the first plane along each ray (docs/performance.md): Embree in packets of rays, one
-/// ray at a time (to measure against), or the sweep over the slices' outlines.
+/// ray at a time (to measure against), or the sweep over the slices' outlines, which asks Embree
+/// where rounding leaves a doubt.
 enum class Visibility { kEmbree, kEmbreeSingle, kSweep };
 
 /// As on the command line: "embree", "sweep"; "embree-single" is for measuring only.
@@ -21,9 +22,9 @@ const char* name_of(Visibility visibility);
 Visibility visibility_of(const std::string& name);
 
 struct Options {
-  RuleSet rules = RuleSet::all();  ///< docs/rules.md says what each changes
-  Visibility visibility = Visibility::kEmbree;
-  int layers = 3;           ///< l_n, 1..8
+  RuleSet rules = RuleSet::all();              ///< docs/rules.md says what each changes
+  Visibility visibility = Visibility::kSweep;  ///< the hits are the same
+  int layers = 3;                              ///< l_n, 1..8
   int ns = 100;             ///< n_s: voxels along each side of the box, 8..1000; the paper has 150
   int nr = 100;             ///< n_r: rays a voxel, 4..1000
   double alcove_area = 80;  ///< A_eps, m²: planes below it may form alcoves
@@ -54,8 +55,9 @@ struct OptionInfo {
 /// The numeric options, in the order in which they are documented.
 const std::vector<OptionInfo>& option_table();
 
-/// What holds when only the rules are chosen: without any, the paper's n_s of 150; with them the
-/// same objects are found with 100 in a third of the time (docs/log/rules-measured.md).
+/// What holds when only the rules are chosen: without any, the paper's n_s of 150 and its rays;
+/// with them the same objects are found with 100 in a third of the time
+/// (docs/log/rules-measured.md).
 Options default_options(const RuleSet& rules);
 
 /// Throws Error{kUsage} naming the option when a value is NaN or out of its range.

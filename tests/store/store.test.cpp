@@ -28,7 +28,7 @@ Options small_options() {
   o.ns = 24;
   o.nr = 40;
   o.lambda = 0.123;
-  o.visibility = Visibility::kSweep;
+  o.visibility = Visibility::kEmbree;
   return o;
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("stages through a scene file give the report of a build in one go") {
   }
   Store store(file.path, false);
   CHECK(store.options().lambda == options.lambda);
-  CHECK(store.options().visibility == Visibility::kSweep);
+  CHECK(store.options().visibility == Visibility::kEmbree);
   REQUIRE(store.names() == std::vector<std::string>{"a", "b"});
   Scene staged;
   for (const std::string& name : store.names()) staged.buildings.push_back(store.building(name));
