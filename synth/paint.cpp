@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 
+#include "core/rays.h"
 #include "image/image.h"
 #include "image/packing.h"
 
@@ -19,6 +21,8 @@ constexpr double kWidest = 5;   // metres, a chart
 constexpr int kGutter = 2;      // texels
 constexpr int kLargest = 8192;  // texels a side
 constexpr int kQuality = 90;
+constexpr int kSamples = 3;        // along a texel's side: joints are narrower than texels
+constexpr double kShown = 0.5;     // metres from the clean model: what lies farther is none of it
 constexpr double kDot = 0.12;      // metres, of the word's letters
 constexpr double kWordEvery = 9;   // metres along a wall
 constexpr double kWordFoot = 1.2;  // metres above the house's foot
@@ -118,10 +122,17 @@ struct Patch {
   Vec2 flat(const Vec3& p) const { return {right.dot(p), down.dot(p)}; }
 };
 
+/// A place that a texel shows.
+struct Spot {
+  Vec3 place, normal;
+  ElementKind kind;
+};
+
 class Painter {
  public:
-  Painter(const SynthBuilding& building, double texel)
-      : building_(building), mesh_(building.source.mesh), texel_(texel) {
+  Painter(const SynthBuilding& building, double texel, const SynthBuilding* clean)
+      : building_(building), mesh_(building.source.mesh), clean_(clean), texel_(texel) {
+    if (clean) clean_surface_.emplace(clean->source.mesh);
     for (const Vec3& v : mesh_.vertices) box_.extend(v);
     for (const Face& f : mesh_.faces) {
       const Vec3 cross = face_cross(mesh_, f);
@@ -200,9 +211,38 @@ class Painter {
     }
   }
 
-  ElementKind kind_of(int face) const {
-    const int object = building_.source.face_object[face];
-    return object < 0 ? ElementKind::kPlain : building_.parts[object].kind;
+  static ElementKind kind_of(const SynthBuilding& building, int face) {
+    const int object = building.source.face_object[face];
+    return object < 0 ? ElementKind::kPlain : building.parts[object].kind;
+  }
+
+  /// What a place of a patch's plane shows.
+  Spot spot_at(const Patch& patch, const Vec2& q) const {
+    const int face = face_at(patch, q);
+    const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
+    const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
+    const double slope = std::max(0.2, normals_[face].dot(patch.normal));
+    const double depth = normals_[face].dot(corner - in_plane) / slope;
+    const Spot own{in_plane + depth * patch.normal, normals_[face], kind_of(building_, face)};
+    if (!clean_) return own;
+    const NearestPoint near = clean_surface_->nearest(own.place, kShown);
+    if (near.triangle < 0 || near.distance > kShown) return own;
+    const Mesh& mesh = clean_->source.mesh;
+    return {near.point, face_cross(mesh, mesh.faces[near.triangle]).normalized(),
+            kind_of(*clean_, near.triangle)};
+  }
+
+  /// The mean over a texel, on the plane of the place in its middle.
+  Light texel_at(const Patch& patch, const Vec2& q, const Paint& paint) const {
+    const Spot spot = spot_at(patch, q);
+    Light sum = Light::Zero();
+    for (int k = 0; k < kSamples * kSamples; ++k) {
+      const Vec2 to = Vec2(k % kSamples + 0.5, k / kSamples + 0.5) / kSamples - Vec2(0.5, 0.5);
+      const Vec3 offset = patch.texel * (to.x() * patch.right + to.y() * patch.down);
+      sum += paint.at(spot.place + offset - spot.normal.dot(offset) * spot.normal, spot.normal,
+                      spot.kind);
+    }
+    return sum / (kSamples * kSamples);
   }
 
   /// Of the faces of a patch the one that lies under a place of its plane, else the nearest.
@@ -223,22 +263,21 @@ class Painter {
     return best;
   }
 
+  /// Of the clean model: a scan ends above or below it.
+  double foot() const {
+    return clean_ ? bounding_box(clean_->source.mesh.vertices).min.z() : box_.min.z();
+  }
+
   Raster picture() const {
     Raster out(width_, height_);
-    const Paint paint(box_.min.z(), seed_);
+    const Paint paint(foot(), seed_);
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       const Patch& patch = patches_[i];
       const PackedRect& r = rects_[i];
       for (int y = 0; y < r.height; ++y)
         for (int x = 0; x < r.width; ++x) {
           const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
-          const int face = face_at(patch, q);
-          const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
-          const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
-          const double slope = std::max(0.2, normals_[face].dot(patch.normal));
-          const double depth = normals_[face].dot(corner - in_plane) / slope;
-          const Light light =
-              paint.at(in_plane + depth * patch.normal, normals_[face], kind_of(face));
+          const Light light = texel_at(patch, q, paint);
           for (int c = 0; c < 3; ++c)
             out.at(r.x + x, r.y + y)[c] = to_srgb(static_cast<float>(light[c]));
         }
@@ -289,6 +328,8 @@ class Painter {
 
   const SynthBuilding& building_;
   const Mesh& mesh_;
+  const SynthBuilding* clean_;
+  std::optional<RayScene> clean_surface_;
   double texel_;
   Box box_;
   long seed_ = 0;
@@ -300,8 +341,8 @@ class Painter {
 
 }  // namespace
 
-PaintedModel paint(const SynthBuilding& building, double texel) {
-  return Painter(building, texel).paint();
+PaintedModel paint(const SynthBuilding& building, double texel, const SynthBuilding* clean) {
+  return Painter(building, texel, clean).paint();
 }
 
 }  // namespace colod
