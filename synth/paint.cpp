@@ -65,14 +65,22 @@ bool is_in_word(double along, double up) {
          1;
 }
 
+/// A place that a texel shows.
+struct Spot {
+  Vec3 place, normal;
+  ElementKind kind;
+  bool is_green = false;  // about the house, none of it
+};
+
 /// What places of one house look like.
 class Paint {
  public:
   Paint(double foot, long seed) : foot_(foot), seed_(seed) {}
 
-  Light at(const Vec3& p, const Vec3& normal, ElementKind kind) const {
-    const Light sky = (0.7 + 0.3 * normal.z()) * Light::Ones();
-    return surface(p, normal, kind).cwiseProduct(sky).cwiseMin(1).cwiseMax(0);
+  Light at(const Spot& spot, const Vec3& p) const {
+    const Light sky = (0.7 + 0.3 * spot.normal.z()) * Light::Ones();
+    const Light own = spot.is_green ? green(p) : surface(p, spot.normal, spot.kind);
+    return own.cwiseProduct(sky).cwiseMin(1).cwiseMax(0);
   }
 
  private:
@@ -89,6 +97,11 @@ class Paint {
       return courses(along, up, 0.5, 0.15, {0.42, 0.12, 0.07}, {0.55, 0.52, 0.48}, seed_);
     const double grain = noise(cell(along * 8), cell(up * 8), seed_);
     return (0.85 + 0.2 * grain) * Light(0.7, 0.6 + 0.2 * noise(seed_, 2, 0), 0.4);
+  }
+
+  static Light green(const Vec3& p) {
+    return (0.7 + 0.6 * noise(cell(4 * p.x()), cell(4 * p.y()), cell(4 * p.z()))) *
+           Light(0.1, 0.14, 0.04);
   }
 
   Light glass(double up) const {
@@ -120,12 +133,6 @@ struct Patch {
   double texel = 0;
 
   Vec2 flat(const Vec3& p) const { return {right.dot(p), down.dot(p)}; }
-};
-
-/// A place that a texel shows.
-struct Spot {
-  Vec3 place, normal;
-  ElementKind kind;
 };
 
 class Painter {
@@ -226,7 +233,8 @@ class Painter {
     const Spot own{in_plane + depth * patch.normal, normals_[face], kind_of(building_, face)};
     if (!clean_) return own;
     const NearestPoint near = clean_surface_->nearest(own.place, kShown);
-    if (near.triangle < 0 || near.distance > kShown) return own;
+    if (near.triangle < 0 || near.distance > kShown)
+      return {own.place, own.normal, ElementKind::kPlain, true};
     const Mesh& mesh = clean_->source.mesh;
     return {near.point, face_cross(mesh, mesh.faces[near.triangle]).normalized(),
             kind_of(*clean_, near.triangle)};
@@ -239,8 +247,7 @@ class Painter {
     for (int k = 0; k < kSamples * kSamples; ++k) {
       const Vec2 to = Vec2(k % kSamples + 0.5, k / kSamples + 0.5) / kSamples - Vec2(0.5, 0.5);
       const Vec3 offset = patch.texel * (to.x() * patch.right + to.y() * patch.down);
-      sum += paint.at(spot.place + offset - spot.normal.dot(offset) * spot.normal, spot.normal,
-                      spot.kind);
+      sum += paint.at(spot, spot.place + offset - spot.normal.dot(offset) * spot.normal);
     }
     return sum / (kSamples * kSamples);
   }
@@ -285,13 +292,21 @@ class Painter {
     return out;
   }
 
+  std::string coordinates(const Patch& patch, const PackedRect& r, const Vec3& p) const {
+    const Vec2 at =
+        (patch.flat(p) - patch.corner) / patch.texel + Vec2(r.x + kGutter, r.y + kGutter);
+    char line[80];
+    std::snprintf(line, sizeof line, "vt %.6f %.6f\n", at.x() / width_, 1 - at.y() / height_);
+    return line;
+  }
+
   std::string obj() const {
     const std::string& name = building_.source.name;
     std::string text = "# " + name + ", " + building_.style + ", metres, z up\nmtllib " + name +
                        ".mtl\nusemtl " + name + "\n";
     char line[160];
     for (const Vec3& v : mesh_.vertices) {
-      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", v.x(), v.y(), v.z());
+      std::snprintf(line, sizeof line, "v %.5f %.5f %.5f\n", v.x(), v.y(), v.z());
       text += line;
     }
     std::vector<int> patch_of(mesh_.faces.size());
@@ -302,25 +317,21 @@ class Painter {
       const int object = building_.source.face_object[f];
       faces_of[object < 0 ? building_.parts.size() : object].push_back(static_cast<int>(f));
     }
-    int next = 1;
+    std::map<std::pair<int, int>, int> number;  // of a vertex on a patch
+    const auto corner = [&](int patch, int vertex) {
+      const auto [it, is_new] =
+          number.emplace(std::pair(patch, vertex), static_cast<int>(number.size()) + 1);
+      if (is_new) text += coordinates(patches_[patch], rects_[patch], mesh_.vertices[vertex]);
+      return std::to_string(vertex + 1) + "/" + std::to_string(it->second);
+    };
     for (std::size_t part = 0; part < faces_of.size(); ++part) {
       const bool is_part = part < building_.parts.size();
       text += std::string("g ") + (is_part ? name_of(building_.parts[part].kind) : "floater") +
               "__" + std::to_string(part) + "\n";
       for (const int f : faces_of[part]) {
-        const Patch& patch = patches_[patch_of[f]];
-        const PackedRect& r = rects_[patch_of[f]];
-        for (const int v : mesh_.faces[f]) {
-          const Vec2 at = (patch.flat(mesh_.vertices[v]) - patch.corner) / patch.texel +
-                          Vec2(r.x + kGutter, r.y + kGutter);
-          std::snprintf(line, sizeof line, "vt %.7f %.7f\n", at.x() / width_, 1 - at.y() / height_);
-          text += line;
-        }
-        const Face& c = mesh_.faces[f];
-        std::snprintf(line, sizeof line, "f %d/%d %d/%d %d/%d\n", c[0] + 1, next, c[1] + 1,
-                      next + 1, c[2] + 1, next + 2);
-        text += line;
-        next += 3;
+        std::string face = "f";
+        for (const int v : mesh_.faces[f]) face += " " + corner(patch_of[f], v);
+        text += face + "\n";
       }
     }
     return text;
