@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 
+#include "core/rays.h"
 #include "image/image.h"
 #include "image/packing.h"
 
@@ -19,6 +21,8 @@ constexpr double kWidest = 5;   // metres, a chart
 constexpr int kGutter = 2;      // texels
 constexpr int kLargest = 8192;  // texels a side
 constexpr int kQuality = 90;
+constexpr int kSamples = 3;        // along a texel's side: joints are narrower than texels
+constexpr double kShown = 0.5;     // metres from the clean model: what lies farther is none of it
 constexpr double kDot = 0.12;      // metres, of the word's letters
 constexpr double kWordEvery = 9;   // metres along a wall
 constexpr double kWordFoot = 1.2;  // metres above the house's foot
@@ -61,14 +65,22 @@ bool is_in_word(double along, double up) {
          1;
 }
 
+/// A place that a texel shows.
+struct Spot {
+  Vec3 place, normal;
+  ElementKind kind;
+  bool is_green = false;  // about the house, none of it
+};
+
 /// What places of one house look like.
 class Paint {
  public:
   Paint(double foot, long seed) : foot_(foot), seed_(seed) {}
 
-  Light at(const Vec3& p, const Vec3& normal, ElementKind kind) const {
-    const Light sky = (0.7 + 0.3 * normal.z()) * Light::Ones();
-    return surface(p, normal, kind).cwiseProduct(sky).cwiseMin(1).cwiseMax(0);
+  Light at(const Spot& spot, const Vec3& p) const {
+    const Light sky = (0.7 + 0.3 * spot.normal.z()) * Light::Ones();
+    const Light own = spot.is_green ? green(p) : surface(p, spot.normal, spot.kind);
+    return own.cwiseProduct(sky).cwiseMin(1).cwiseMax(0);
   }
 
  private:
@@ -85,6 +97,11 @@ class Paint {
       return courses(along, up, 0.5, 0.15, {0.42, 0.12, 0.07}, {0.55, 0.52, 0.48}, seed_);
     const double grain = noise(cell(along * 8), cell(up * 8), seed_);
     return (0.85 + 0.2 * grain) * Light(0.7, 0.6 + 0.2 * noise(seed_, 2, 0), 0.4);
+  }
+
+  static Light green(const Vec3& p) {
+    return (0.7 + 0.6 * noise(cell(4 * p.x()), cell(4 * p.y()), cell(4 * p.z()))) *
+           Light(0.1, 0.14, 0.04);
   }
 
   Light glass(double up) const {
@@ -120,8 +137,9 @@ struct Patch {
 
 class Painter {
  public:
-  Painter(const SynthBuilding& building, double texel)
-      : building_(building), mesh_(building.source.mesh), texel_(texel) {
+  Painter(const SynthBuilding& building, double texel, const SynthBuilding* clean)
+      : building_(building), mesh_(building.source.mesh), clean_(clean), texel_(texel) {
+    if (clean) clean_surface_.emplace(clean->source.mesh);
     for (const Vec3& v : mesh_.vertices) box_.extend(v);
     for (const Face& f : mesh_.faces) {
       const Vec3 cross = face_cross(mesh_, f);
@@ -200,9 +218,38 @@ class Painter {
     }
   }
 
-  ElementKind kind_of(int face) const {
-    const int object = building_.source.face_object[face];
-    return object < 0 ? ElementKind::kPlain : building_.parts[object].kind;
+  static ElementKind kind_of(const SynthBuilding& building, int face) {
+    const int object = building.source.face_object[face];
+    return object < 0 ? ElementKind::kPlain : building.parts[object].kind;
+  }
+
+  /// What a place of a patch's plane shows.
+  Spot spot_at(const Patch& patch, const Vec2& q) const {
+    const int face = face_at(patch, q);
+    const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
+    const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
+    const double slope = std::max(0.2, normals_[face].dot(patch.normal));
+    const double depth = normals_[face].dot(corner - in_plane) / slope;
+    const Spot own{in_plane + depth * patch.normal, normals_[face], kind_of(building_, face)};
+    if (!clean_) return own;
+    const NearestPoint near = clean_surface_->nearest(own.place, kShown);
+    if (near.triangle < 0 || near.distance > kShown)
+      return {own.place, own.normal, ElementKind::kPlain, true};
+    const Mesh& mesh = clean_->source.mesh;
+    return {near.point, face_cross(mesh, mesh.faces[near.triangle]).normalized(),
+            kind_of(*clean_, near.triangle)};
+  }
+
+  /// The mean over a texel, on the plane of the place in its middle.
+  Light texel_at(const Patch& patch, const Vec2& q, const Paint& paint) const {
+    const Spot spot = spot_at(patch, q);
+    Light sum = Light::Zero();
+    for (int k = 0; k < kSamples * kSamples; ++k) {
+      const Vec2 to = Vec2(k % kSamples + 0.5, k / kSamples + 0.5) / kSamples - Vec2(0.5, 0.5);
+      const Vec3 offset = patch.texel * (to.x() * patch.right + to.y() * patch.down);
+      sum += paint.at(spot, spot.place + offset - spot.normal.dot(offset) * spot.normal);
+    }
+    return sum / (kSamples * kSamples);
   }
 
   /// Of the faces of a patch the one that lies under a place of its plane, else the nearest.
@@ -223,27 +270,34 @@ class Painter {
     return best;
   }
 
+  /// Of the clean model: a scan ends above or below it.
+  double foot() const {
+    return clean_ ? bounding_box(clean_->source.mesh.vertices).min.z() : box_.min.z();
+  }
+
   Raster picture() const {
     Raster out(width_, height_);
-    const Paint paint(box_.min.z(), seed_);
+    const Paint paint(foot(), seed_);
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       const Patch& patch = patches_[i];
       const PackedRect& r = rects_[i];
       for (int y = 0; y < r.height; ++y)
         for (int x = 0; x < r.width; ++x) {
           const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
-          const int face = face_at(patch, q);
-          const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
-          const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
-          const double slope = std::max(0.2, normals_[face].dot(patch.normal));
-          const double depth = normals_[face].dot(corner - in_plane) / slope;
-          const Light light =
-              paint.at(in_plane + depth * patch.normal, normals_[face], kind_of(face));
+          const Light light = texel_at(patch, q, paint);
           for (int c = 0; c < 3; ++c)
             out.at(r.x + x, r.y + y)[c] = to_srgb(static_cast<float>(light[c]));
         }
     }
     return out;
+  }
+
+  std::string coordinates(const Patch& patch, const PackedRect& r, const Vec3& p) const {
+    const Vec2 at =
+        (patch.flat(p) - patch.corner) / patch.texel + Vec2(r.x + kGutter, r.y + kGutter);
+    char line[80];
+    std::snprintf(line, sizeof line, "vt %.6f %.6f\n", at.x() / width_, 1 - at.y() / height_);
+    return line;
   }
 
   std::string obj() const {
@@ -252,7 +306,7 @@ class Painter {
                        ".mtl\nusemtl " + name + "\n";
     char line[160];
     for (const Vec3& v : mesh_.vertices) {
-      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", v.x(), v.y(), v.z());
+      std::snprintf(line, sizeof line, "v %.5f %.5f %.5f\n", v.x(), v.y(), v.z());
       text += line;
     }
     std::vector<int> patch_of(mesh_.faces.size());
@@ -263,25 +317,21 @@ class Painter {
       const int object = building_.source.face_object[f];
       faces_of[object < 0 ? building_.parts.size() : object].push_back(static_cast<int>(f));
     }
-    int next = 1;
+    std::map<std::pair<int, int>, int> number;  // of a vertex on a patch
+    const auto corner = [&](int patch, int vertex) {
+      const auto [it, is_new] =
+          number.emplace(std::pair(patch, vertex), static_cast<int>(number.size()) + 1);
+      if (is_new) text += coordinates(patches_[patch], rects_[patch], mesh_.vertices[vertex]);
+      return std::to_string(vertex + 1) + "/" + std::to_string(it->second);
+    };
     for (std::size_t part = 0; part < faces_of.size(); ++part) {
       const bool is_part = part < building_.parts.size();
       text += std::string("g ") + (is_part ? name_of(building_.parts[part].kind) : "floater") +
               "__" + std::to_string(part) + "\n";
       for (const int f : faces_of[part]) {
-        const Patch& patch = patches_[patch_of[f]];
-        const PackedRect& r = rects_[patch_of[f]];
-        for (const int v : mesh_.faces[f]) {
-          const Vec2 at = (patch.flat(mesh_.vertices[v]) - patch.corner) / patch.texel +
-                          Vec2(r.x + kGutter, r.y + kGutter);
-          std::snprintf(line, sizeof line, "vt %.7f %.7f\n", at.x() / width_, 1 - at.y() / height_);
-          text += line;
-        }
-        const Face& c = mesh_.faces[f];
-        std::snprintf(line, sizeof line, "f %d/%d %d/%d %d/%d\n", c[0] + 1, next, c[1] + 1,
-                      next + 1, c[2] + 1, next + 2);
-        text += line;
-        next += 3;
+        std::string face = "f";
+        for (const int v : mesh_.faces[f]) face += " " + corner(patch_of[f], v);
+        text += face + "\n";
       }
     }
     return text;
@@ -289,6 +339,8 @@ class Painter {
 
   const SynthBuilding& building_;
   const Mesh& mesh_;
+  const SynthBuilding* clean_;
+  std::optional<RayScene> clean_surface_;
   double texel_;
   Box box_;
   long seed_ = 0;
@@ -300,8 +352,8 @@ class Painter {
 
 }  // namespace
 
-PaintedModel paint(const SynthBuilding& building, double texel) {
-  return Painter(building, texel).paint();
+PaintedModel paint(const SynthBuilding& building, double texel, const SynthBuilding* clean) {
+  return Painter(building, texel, clean).paint();
 }
 
 }  // namespace colod

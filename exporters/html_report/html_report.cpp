@@ -67,7 +67,10 @@ std::string pictures_json(const std::vector<std::vector<std::string>>& pictures)
     text += "[";
     for (std::size_t i = 0; i < building.size(); ++i) {
       text += i > 0 ? ",\"" : "\"";
-      if (!building[i].empty()) text += "data:image/png;base64," + base64(building[i]);
+      const bool is_photo = building[i].starts_with("\xFF\xD8");
+      if (!building[i].empty())
+        text +=
+            (is_photo ? "data:image/jpeg;base64," : "data:image/png;base64,") + base64(building[i]);
       text += "\"";
     }
     text += "]";

@@ -13,7 +13,8 @@ struct HtmlReport {
   std::string report;  ///< JSON text as in report.json
   std::string parts;   ///< JSON text: clusters and similarities of the co-analysis; may be empty
   std::vector<std::vector<std::string>> pictures;  ///< per building of the report: PNG bytes of the
-                                                   ///< source, then of each layer; empty: none
+                                                   ///< source, then of each layer; then, where it
+                                                   ///< has textures, JPEGs of them; empty: none
   std::vector<std::string> layer_colors;           ///< CSS colours of the layers in the pictures
 };
 

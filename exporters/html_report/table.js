@@ -210,8 +210,10 @@ function fillCard(card) {
     : make('div', { class: failure ? 'none' : 'none calm' }, failure ? 'no mesh' : 'no picture'), make('figcaption', {}, make('b', {}, title), ' ', note));
   const strip = [picture(0, 'Source', `${whole(b.size)} ${b.unit}`, false),
     ...b.own.map((l, k) => picture(k + 1, `Layer ${k}`, l && !l.failure ? captionOf(l) : 'failed', !l || l.failure))];
+  const shapes = 1 + b.layers.length;
+  const looks = own.slice(shapes).map((_, k) => picture(shapes + k, k ? `Layer ${k - 1}` : 'Source', 'as it looks', false));
   card.append(...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
-    make('div', { class: 'strip' }, ...strip));
+    make('div', { class: 'strip' }, ...strip), ...looks.length ? [make('div', { class: 'strip' }, ...looks)] : []);
   if (b.left_out.length) card.append(make('p', { class: 'note' }, `Left out of the source: ${leftOut(b)}.`));
   if (b.own.some((l) => l?.looks)) card.append(looksOf(b));
   if (b.own.some((l) => l && !l.failure)) card.append(measuresOf(b));
@@ -226,7 +228,7 @@ function showPictures() {
     box.remove();
     return () => {};
   }
-  const width = Math.min(320, Math.max(...some.slice(0, 20).map(widthOf)));
+  const width = Math.min(320, Math.max(...some.filter((p) => p.startsWith('data:image/png')).slice(0, 20).map(widthOf)));
   const card = (layerCount + 1) * (Math.max(width, 96) + 8) + 24, withPictures = pictures.filter((own) => own.length).length;
   const cards = make('div', { class: 'cards', style: { '--columns': layerCount + 1, '--card': `${card}px`, '--tall': `${Math.round(width * 0.75) + 85}px` } });
   const swatch = (color, text) => make('span', {}, make('span', { class: 'swatch', style: { '--c': color } }), text);

@@ -13,9 +13,9 @@
 #include "core/parallel.h"
 #include "core/spread.h"
 #include "fill.h"
+#include "image/look_sampler.h"
 #include "parameters.h"
 #include "probe.h"
-#include "sampler.h"
 
 namespace colod {
 
@@ -28,7 +28,8 @@ constexpr int kSquare = 64;                // texels a side that one task draws
 constexpr double kColorSampleArea = 0.25;  // m² of a facet that a sample stands for
 constexpr int kMostColorSamples = 256;
 
-/// How often texels were found in which way, and the sum of their light.
+/// How often texels were found in which way, and the sum of the light of those seen: the others
+/// repeat the rim of what is.
 struct Tally {
   std::int64_t seen = 0, nearest = 0, missing = 0;
   Eigen::Vector3d light = Eigen::Vector3d::Zero();
@@ -78,7 +79,7 @@ std::uint8_t* put(std::uint8_t* pixel, const Light& light) {
 /// Draws one layer's atlas.
 class Painter {
  public:
-  Painter(const Probe& probe, const Sampler& sampler, const ImageCache& cache,
+  Painter(const Probe& probe, const LookSampler& sampler, const ImageCache& cache,
           const PolygonMesh& mesh, const BakeOptions& options)
       : probe_(probe), sampler_(sampler), cache_(cache), mesh_(mesh), reach_(options.reach) {
     charts_ = find_charts(mesh);
@@ -90,7 +91,7 @@ class Painter {
     const double ratio = atlas_.texel / std::max(sampler.texel(), 1e-9);
     samples_ = ratio <= kOneSample
                    ? 1
-                   : std::clamp(static_cast<int>(std::ceil(ratio / kMostLevel)), 2, kMostSamples);
+                   : std::clamp(static_cast<int>(std::ceil(ratio / kMostTexels)), 2, kMostSamples);
   }
 
   BakedTexture paint() {
@@ -201,7 +202,7 @@ class Painter {
         (how == Finding::kSeen      ? tally.seen
          : how == Finding::kNearest ? tally.nearest
                                     : tally.missing) += 1;
-        tally.light += light.cast<double>();
+        if (how == Finding::kSeen) tally.light += light.cast<double>();
       }
   }
 
@@ -230,20 +231,42 @@ class Painter {
     return 2 * seen >= found ? Finding::kSeen : Finding::kNearest;
   }
 
+  /// What little is known of a chart is no picture of it.
+  void forget(const PackedRect& r) {
+    for (int y = r.y; y < r.y + r.height; ++y)
+      std::fill_n(&is_known_[static_cast<std::size_t>(y) * atlas_.width + r.x], r.width, 0);
+  }
+
   static bool is_hardly_seen(const Tally& t) {
     return static_cast<double>(t.found()) < kLeastSeen * static_cast<double>(t.all());
   }
 
+  static Light mean_of(const Tally& t, const Light& otherwise) {
+    return t.seen > 0 ? Light((t.light / static_cast<double>(t.seen)).cast<float>()) : otherwise;
+  }
+
+  /// The mean of walls for walls, of the rest for the rest; of all where hardly any is seen.
+  std::array<Light, 2> means(const std::vector<Tally>& of_chart, const Light& mean) const {
+    std::array<Tally, 2> of_kind;
+    for (std::size_t c = 0; c < charts_.size(); ++c) of_kind[is_wall(c)].add(of_chart[c]);
+    std::array<Light, 2> out;
+    for (std::size_t k = 0; k < 2; ++k)
+      out[k] = is_hardly_seen(of_kind[k]) ? mean : mean_of(of_kind[k], mean);
+    return out;
+  }
+
+  bool is_wall(std::size_t chart) const { return std::abs(charts_[chart].normal.z()) < kUpright; }
+
+  /// What is far from all that is seen has its chart's mean, or the building's.
   void fill(const std::vector<Tally>& of_chart, const Tally& total, Raster& image) {
-    const Light mean = total.found() > 0
-                           ? Light((total.light / static_cast<double>(total.found())).cast<float>())
-                           : Light(Light::Constant(0.5f));
+    const Light mean = mean_of(total, Light::Constant(0.5f));
+    const std::array<Light, 2> of_kind = means(of_chart, mean);
     parallel_for(charts_.size(), [&](std::size_t c) {
       const PackedRect& r = atlas_.rects[c];
-      const Window window{r.x, r.y, r.width, r.height};
-      if (!is_hardly_seen(of_chart[c])) return push_pull(image, is_known_, window);
-      for (int y = r.y; y < r.y + r.height; ++y)
-        for (int x = r.x; x < r.x + r.width; ++x) put(image.at(x, y), mean);
+      const bool is_told = !is_hardly_seen(of_chart[c]);
+      if (!is_told) forget(r);
+      push_pull(image, is_known_, {r.x, r.y, r.width, r.height}, kCarried / atlas_.texel,
+                is_told ? mean_of(of_chart[c], of_kind[is_wall(c)]) : of_kind[is_wall(c)]);
     });
     std::vector<std::uint8_t> is_taken(is_known_.size(), 0);
     for (const PackedRect& r : atlas_.rects)
@@ -284,7 +307,7 @@ class Painter {
   }
 
   const Probe& probe_;
-  const Sampler& sampler_;
+  const LookSampler& sampler_;
   const ImageCache& cache_;
   const PolygonMesh& mesh_;
   double reach_;
@@ -297,7 +320,7 @@ class Painter {
 }  // namespace
 
 struct Baker::Impl {
-  Sampler sampler;
+  LookSampler sampler;
   Probe probe;
   const ImageCache& cache;
 
@@ -322,7 +345,7 @@ namespace {
 using Sum = Eigen::Vector4d;
 
 /// What is seen of a triangle, by samples spread over it.
-Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const Sampler& sampler,
+Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const LookSampler& sampler,
             const ImageCache& cache, double reach) {
   const Vec3 turn = face_cross(mesh, f);
   const double area = 0.5 * turn.norm();

@@ -26,7 +26,8 @@ struct BakeFacts {
   double texel = 0;           ///< metres a side; more than asked where the atlas would not fit
   int charts = 0;
   /// Shares of the texels on the surface, 0..1, together 1: seen along the normal; by the nearest
-  /// point; filled from neighbours; no part of the source near them, so a mean stands for them.
+  /// point; filled from neighbours or with the facet's mean; no part of the source near them, so a
+  /// mean stands for them.
   double seen = 0, nearest = 0, filled = 0, unseen = 0;
 };
 
@@ -48,7 +49,8 @@ class Baker {
   /// smallest rectangle and drawn at one scale, without distortion. A texel shows what the nearest
   /// surface along the facet's normal shows whose normal agrees, else the nearest point; the mean
   /// of several samples, in linear light, of the source's mip level that fits. What is left is
-  /// filled from its neighbours, a facet of which nothing is seen with the mean of the building.
+  /// filled from its neighbours, farther than half a metre from them with the facet's mean; a facet
+  /// of which nothing is seen with the mean of the building's walls or of its other facets.
   /// `mesh` is in the source's coordinates, its vertices shared between facets. Deterministic, runs
   /// in parallel. Throws Error{kStage} where `largest` is too small for the number of charts.
   BakedTexture bake(const PolygonMesh& mesh, const BakeOptions& options) const;

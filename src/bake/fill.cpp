@@ -1,4 +1,5 @@
 // Based on: Gortler et al., The lumigraph, SIGGRAPH 1996 (push-pull).
+// Differs: pulling ends at the level whose pixels are as wide as colours may be carried.
 #include "fill.h"
 
 #include <Eigen/Core>
@@ -56,9 +57,12 @@ Eigen::Vector4f between(const Level& coarse, int x, int y) {
 
 }  // namespace
 
-void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const Window& w) {
+void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const Window& w,
+               double reach, const Light& far) {
   std::vector<Level> levels = {first_level(raster, is_known, w)};
-  while (levels.back().width > 1 || levels.back().height > 1) {
+  // A pixel of level l covers 2^(l+1); it is mixed from its neighbours' one level up.
+  for (double side = 2; 2 * side <= reach && (levels.back().width > 1 || levels.back().height > 1);
+       side *= 2) {
     const Level& fine = levels.back();
     Level coarse = half_of(fine.width, fine.height);
     for (int y = 0; y < fine.height; ++y)
@@ -66,8 +70,8 @@ void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const 
     saturate(coarse);
     levels.push_back(std::move(coarse));
   }
-  if (!(levels.back().sums[0][3] > 0)) return;
-  levels.back().sums[0] /= levels.back().sums[0][3];
+  for (Eigen::Vector4f& s : levels.back().sums)
+    s += (1 - s[3]) * Eigen::Vector4f(far[0], far[1], far[2], 1);
   for (std::size_t l = levels.size() - 1; l-- > 0;)
     for (int y = 0; y < levels[l].height; ++y)
       for (int x = 0; x < levels[l].width; ++x) {

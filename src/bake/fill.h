@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "image/look_sampler.h"
 
 namespace colod::bake {
 
@@ -13,8 +14,10 @@ struct Window {
 };
 
 /// Gives every pixel of a window that is not known a colour from the known ones about it, near ones
-/// first; in linear light. `is_known` is as long as the raster has pixels. Without a known one all
-/// stays as it is. O(pixels).
-void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const Window& window);
+/// first; in linear light. Pixels farther than about `reach` from any known one get `far`, so that
+/// a rim is not smeared over what nobody saw. `is_known` is as long as the raster has pixels.
+/// O(pixels).
+void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const Window& window,
+               double reach, const Light& far);
 
 }  // namespace colod::bake

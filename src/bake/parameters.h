@@ -3,21 +3,23 @@
 
 namespace colod::parameters::bake {
 
-constexpr int kGutter = 2;        ///< texels about a chart: two charts are four apart, so that two
-                                  ///< levels of a mip chain keep them apart
-constexpr int kBlock = 4;         ///< texels that sides of charts and atlases are multiples of:
-                                  ///< blocks of texture compressors
-constexpr double kBorder = 1.5;   ///< texels beyond a facet's border that repeat it: what bilinear
-                                  ///< filtering reads there
-constexpr double kAgrees = 0.35;  ///< cosine between the normals of a facet and of what it shows
-constexpr double kNearest = 0.5;  ///< metres: a nearest point farther away is smeared from the rim
-                                  ///< of what is seen, as below an eaves without walls
-constexpr int kMostLayers = 4;    ///< surfaces that a ray passes that do not agree
-constexpr double kLift = 2e-3;    ///< metres before a facet where a ray begins, against rounding
-constexpr double kMostLevel = 4;  ///< source texels a sample covers at most: beyond it charts of
-                                  ///< the source's atlas run together
+constexpr int kGutter = 2;         ///< texels about a chart: two charts are four apart, so that two
+                                   ///< levels of a mip chain keep them apart
+constexpr int kBlock = 4;          ///< texels that sides of charts and atlases are multiples of:
+                                   ///< blocks of texture compressors
+constexpr double kBorder = 1.5;    ///< texels beyond a facet's border that repeat it: what bilinear
+                                   ///< filtering reads there
+constexpr double kAgrees = 0.35;   ///< cosine between the normals of a facet and of what it shows
+constexpr double kNearest = 0.25;  ///< metres: a nearest point farther away is smeared from the rim
+                                   ///< of what is seen, as below an eaves without walls
+constexpr double kCarried = 0.5;   ///< metres that a colour is carried into what nobody saw: more
+                                   ///< looks smeared, less leaves specks of the mean in windows
+constexpr int kMostLayers = 4;     ///< surfaces that a ray passes that do not agree
+constexpr double kLift = 2e-3;     ///< metres before a facet where a ray begins, against rounding
 constexpr double kOneSample = 1.5;   ///< source texels a texel may cover with one sample
 constexpr int kMostSamples = 16;     ///< along each side of a texel
 constexpr double kLeastSeen = 0.03;  ///< of a chart's texels: fewer say nothing of the rest
+constexpr double kUpright = 0.5;  ///< upright part of a wall's normal at most: what nobody saw of
+                                  ///< walls looks like walls
 
 }  // namespace colod::parameters::bake

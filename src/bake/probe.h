@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "core/rays.h"
-#include "sampler.h"
 
 namespace colod::bake {
 

@@ -6,8 +6,10 @@
 #include "cli.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "image/look_sampler.h"
 #include "input_options.h"
 #include "log.h"
+#include "measure/appearance.h"
 #include "measure/consistency.h"
 #include "measure/light_field.h"
 #include "measure/looks.h"
@@ -22,7 +24,8 @@ struct EvalArguments {
   std::string reference, model, truth;
   ReadOptions read;
   DistanceOptions distance;
-  bool has_lfd = false, has_parts = false;
+  bool has_lfd = false, has_parts = false, has_appearance = false;
+  double gsd = 0, memory = 512;  // metres; MiB
   int threads = 0;
 };
 
@@ -42,6 +45,32 @@ void add_light_fields(const Source& reference, const Source& model, Json& json) 
       light_field_distance(describe_as_program(reference.mesh), describe_as_program(model.mesh));
   const SilhouetteOverlap overlap = overlap_silhouettes(reference.mesh, model.mesh);
   json["silhouette_overlap"] = {{"mean", overlap.mean}, {"worst", overlap.worst}};
+}
+
+void need_look(const Source& s) {
+  if (!s.is_mesh() || s.look.is_empty())
+    throw Error(Stage::kInput, s.name, "has neither textures nor colours: --appearance needs them");
+}
+
+void add_appearance(const Source& reference, const Source& model, const EvalArguments& a,
+                    Json& json) {
+  need_look(reference), need_look(model);
+  const ImageCache images(static_cast<std::size_t>(a.memory * (1 << 20)));
+  const LookSampler shown(reference.mesh, reference.look, images);
+  const LookSampler judged(model.mesh, model.look, images);
+  for (const auto& [source, look] : {std::pair(&reference, &shown), std::pair(&model, &judged)})
+    for (const std::string& w : look->warnings())
+      Log(false, false).message({Level::kWarning, source->name + ": " + w});
+  const AppearanceDifference d = compare_appearance(reference.mesh, shown, model.mesh, judged,
+                                                    a.gsd > 0 ? a.gsd : judged.texel());
+  json["appearance"] = {{"directions", d.directions},
+                        {"gsd", d.gsd},
+                        {"pixels", d.pixels},
+                        {"psnr", d.psnr},
+                        {"ssim", d.ssim},
+                        {"flip", d.flip},
+                        {"only_reference", d.only_reference},
+                        {"only_model", d.only_model}};
 }
 
 Json read_report(const std::string& folder) {
@@ -152,6 +181,7 @@ int eval(const EvalArguments& a) {
                     {"edge", gauge.source().edge}};
   json["looks"] = Json::parse(looks_json(gauge.look_at(model.mesh)));
   if (a.has_lfd) add_light_fields(reference, model, json);
+  if (a.has_appearance) add_appearance(reference, model, a, json);
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;
 }
@@ -179,6 +209,16 @@ Run add_eval(CLI::App& app) {
       "--lfd", a->has_lfd,
       "also the light field distance: how alike both look from all sides, 0 = the same; and how "
       "their silhouettes overlap");
+  app.add_flag("--appearance", a->has_appearance,
+               "also how alike both look: PSNR, SSIM and FLIP over the pixels of pictures from 24 "
+               "directions");
+  app.add_option("--gsd", a->gsd,
+                 "with --appearance: side of a pixel [m], default that of the model's texels")
+      ->check(number_between(1e-4, 1000.0));
+  app.add_option("--texture-memory", a->memory,
+                 "with --appearance: MiB that decoded images may take together, default 512; an "
+                 "image that takes more is left out")
+      ->check(number_between(1.0, 1e6));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
   return [a] { return eval(*a); };

@@ -17,7 +17,7 @@ int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::t
               Pictures pictures, Depot& depot, const OutputArguments& a, const Log& log) {
   encode_scene(
       scene, a.options, depot, [&](const Encoded& file) { write_file(a.out, file); },
-      [&](const Message& m) { log.message(m); });
+      [&](const Message& m) { log.message(m); }, &pictures);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   for (const Encoded& file : encode_report(scene, options, {seconds.count(), peak_memory_bytes()},
                                            std::move(pictures), a.options))

@@ -4,7 +4,9 @@
 #include "cli.h"
 #include "core/parallel.h"
 #include "exporters/files.h"
+#include "image/look_sampler.h"
 #include "input_options.h"
+#include "log.h"
 #include "numbers.h"
 #include "picture/picture.h"
 #include "read/frame.h"
@@ -18,11 +20,19 @@ struct PreviewArguments {
   ReadOptions read;
   PreviewOptions preview;
   int columns = 4, threads = 0;
+  double memory = 512;  // MiB
+  bool is_plain = false;
 };
 
-Image render(const Source& source, const PreviewOptions& options) {
-  return source.is_mesh() ? render_preview(source.mesh, options)
-                          : render_preview(source.cloud, options);
+/// Textured where it has textures or colours of its own.
+Image render(const Source& source, const PreviewArguments& a, const PreviewOptions& options) {
+  if (!source.is_mesh()) return render_preview(source.cloud, options);
+  if (a.is_plain || !source.look.has_detail()) return render_preview(source.mesh, options);
+  const ImageCache images(static_cast<std::size_t>(a.memory * (1 << 20)));
+  const LookSampler look(source.mesh, source.look, images);
+  for (const std::string& w : look.warnings())
+    Log(false, false).message({Level::kWarning, source.name + ": " + w});
+  return render_preview(source.mesh, look, options);
 }
 
 /// Meshes of one row share the camera, so that they can be compared.
@@ -40,7 +50,7 @@ int preview(const PreviewArguments& a) {
       if (i == row) options.box = bounding_box(s.is_mesh() ? s.mesh.vertices : s.cloud.points);
     }
     for (const Source& s : sources) {
-      images.push_back(render(s, options));
+      images.push_back(render(s, a, options));
       const std::string size = s.is_mesh() ? std::to_string(s.mesh.faces.size()) + " faces"
                                            : std::to_string(s.cloud.points.size()) + " points";
       captions.push_back(std::filesystem::path(s.path).stem().string() + ", " + size);
@@ -70,6 +80,11 @@ Run add_preview(CLI::App& app) {
       ->check(number_between(-360.0, 360.0));
   app.add_option("--elevation", a->preview.elevation_deg, "of the camera [deg]")
       ->check(number_between(-90.0, 90.0));
+  app.add_flag("--plain", a->is_plain, "shaded shapes, also of what has textures or colours");
+  app.add_option("--texture-memory", a->memory,
+                 "MiB that decoded images may take together, default 512; an image that takes more "
+                 "is left out")
+      ->check(number_between(1.0, 1e6));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
   return [a] { return preview(*a); };

@@ -21,37 +21,43 @@ struct SynthArguments {
   double texel = 0.03;
 };
 
+/// A scan is painted with what its clean model shows.
 void write_painted(const SynthArguments& a, const std::vector<SynthBuilding>& buildings,
-                   const std::string& out) {
+                   const std::vector<SynthBuilding>& clean, const std::string& out) {
   parallel_for(buildings.size(), [&](std::size_t i) {
     const std::string& name = buildings[i].source.name;
-    const PaintedModel model = paint(buildings[i], a.texel);
+    const PaintedModel model = paint(buildings[i], a.texel, clean.empty() ? nullptr : &clean[i]);
     write_file(out, {name + ".obj", model.obj});
     write_file(out, {name + ".mtl", model.mtl});
     write_file(out, {name + ".jpg", model.image});
   });
 }
 
-void write_models(const SynthArguments& a, const std::vector<SynthBuilding>& buildings,
-                  const std::string& out) {
-  if (a.is_textured) return write_painted(a, buildings, out);
+void write_models(const std::vector<SynthBuilding>& buildings, const std::string& out) {
   for (const SynthBuilding& b : buildings) write_file(out, {b.source.name + ".obj", synth_obj(b)});
 }
 
 int synth(const SynthArguments& a) {
   limit_threads(a.threads);
-  SynthOptions options = a.options;
-  const std::vector<SynthBuilding> buildings = make_neighbourhood(options);
-  if ((options.is_scan || options.is_drone) && !a.is_textured)
+  const bool is_scan = a.options.is_scan || a.options.is_drone;
+  const std::vector<SynthBuilding> buildings = make_neighbourhood(a.options);
+  std::vector<SynthBuilding> clean;
+  if (a.options.is_drone || (is_scan && a.is_textured)) {
+    SynthOptions options = a.options;
+    options.is_scan = options.is_drone = false;
+    clean = make_neighbourhood(options);
+  }
+  if (a.is_textured) {
+    write_painted(a, buildings, clean, a.out);
+    if (is_scan) write_painted(a, clean, {}, a.out + "/clean");
+  } else if (is_scan) {
     for (const SynthBuilding& b : buildings)
       write_file(a.out, {b.source.name + ".ply", synth_ply(b)});
-  else
-    write_models(a, buildings, a.out);
-  write_file(a.out, {"truth.json", truth_json(buildings, options)});
-  if (options.is_drone) {
-    options.is_drone = false;
-    write_models(a, make_neighbourhood(options), a.out + "/clean");
+    if (a.options.is_drone) write_models(clean, a.out + "/clean");
+  } else {
+    write_models(buildings, a.out);
   }
+  write_file(a.out, {"truth.json", truth_json(buildings, a.options)});
   std::fprintf(stderr, "colod: %zu buildings and truth.json written to %s\n", buildings.size(),
                a.out.c_str());
   return 0;

@@ -182,6 +182,14 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
   return slot->entry;
 }
 
+void ImageCache::put(const ImagePlace& place, Raster raster) {
+  const std::shared_ptr<Slot> slot = impl_->slot(place);
+  const std::lock_guard lock(slot->mutex);
+  slot->is_known = true;
+  slot->size = {raster.width, raster.height};
+  slot->entry = {build(std::move(raster)), ""};
+}
+
 ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   const std::shared_ptr<Slot> slot = impl_->slot(place);
   const auto known = [&] { return Facts{slot->size[0], slot->size[1], slot->entry.problem}; };

@@ -29,6 +29,9 @@ class ImageCache {
   /// Decodes it where it is not there. What is held by others stays in memory beyond the budget
   /// until they let go. Thread-safe.
   Entry get(const ImagePlace& place) const;
+  /// Pixels that stand for a place of which no file is read; they stay, and take nothing of the
+  /// budget. Thread-safe.
+  void put(const ImagePlace& place, Raster raster);
   /// Width and height in pixels, 0 where it cannot be read, and what is wrong with it. Decodes it
   /// where nobody asked for it before.
   struct Facts {

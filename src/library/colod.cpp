@@ -175,15 +175,17 @@ struct Scene::Impl {
   void encode(const colod::Take& take) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<Message> told;
+    colod::Pictures pictures = product.pictures;
     colod::in_threads(threads, [&] {
-      colod::encode_scene(product.scene, job.output, *product.depot, take,
-                          [&](const colod::Message& m) { told.push_back(message_of(m)); });
+      colod::encode_scene(
+          product.scene, job.output, *product.depot, take,
+          [&](const colod::Message& m) { told.push_back(message_of(m)); }, &pictures);
     });
     if (report.empty()) notes.insert(notes.end(), told.begin(), told.end());
     const double total = seconds + Seconds(std::chrono::steady_clock::now() - start).count();
     for (const colod::Encoded& file :
          colod::encode_report(product.scene, job.options, {total, colod::peak_memory_bytes()},
-                              product.pictures, job.output)) {
+                              std::move(pictures), job.output)) {
       if (file.path == "report.json") report = file.bytes;
       take(file);
     }

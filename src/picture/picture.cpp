@@ -14,6 +14,7 @@
 
 #include "core/parallel.h"
 #include "core/rays.h"
+#include "image/look_sampler.h"
 
 namespace colod {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kMargin = 1.06;  ///< the frame is this much larger than the bo
 constexpr Color kLightGrey{205, 205, 200}, kBackFace{150, 25, 25}, kRing{220, 0, 60};
 constexpr double kInk = 0.25;        ///< how bright a line is
 constexpr double kCrease_deg = 25;   ///< two faces without facets are told apart from here on
+constexpr double kGrazing = 0.1;     ///< cosine: what is seen flatter is as sharp as this
 constexpr double kDepthStep = 0.01;  ///< of the box's diagonal: a line between surfaces
 
 /// Orthographic; the same box and options give the same camera.
@@ -333,6 +335,31 @@ Image render_preview(const Mesh& mesh, const PreviewOptions& options,
   });
   for (const Vec3& place : options.marks) draw_ring(place, c, image);
   return image;
+}
+
+Image render_preview(const Mesh& mesh, const LookSampler& look, const PreviewOptions& options) {
+  assert(options.width > 0 && options.height > 0 && options.samples > 0);
+  const Camera c =
+      make_camera(options, options.box.is_empty() ? finite_box(mesh.vertices) : options.box);
+  const std::vector<Surface> surfaces = make_surfaces(mesh, {});
+  const Samples samples = cast_samples(mesh, c);
+  std::vector<Color> colors(samples.all.size(), kBackground);
+  parallel_for(static_cast<std::size_t>(c.height), [&](std::size_t y) {
+    Lens lens(look.cache());
+    for (int x = 0; x < c.width; ++x) {
+      const Sample& s = samples.all[y * c.width + x];
+      if (s.face < 0) continue;
+      Color& color = colors[y * c.width + x] = kBackFace;
+      if (s.is_back) continue;
+      const double facing = std::max(kGrazing, -surfaces[s.face].normal.dot(c.forward));
+      const Vec3 place = c.at(x, static_cast<int>(y)) + s.depth * c.forward;
+      const Light light = look.sample(s.face, place, c.step / std::sqrt(facing), lens);
+      for (int k = 0; k < 3; ++k) color[k] = to_srgb(light[k]);
+    }
+  });
+  return average(c, samples.window, [&](int x, int y) {
+    return as_vector(colors[static_cast<std::size_t>(y) * c.width + x]);
+  });
 }
 
 Image render_preview(const PointCloud& cloud, const PreviewOptions& options) {

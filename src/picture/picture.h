@@ -11,6 +11,8 @@
 
 namespace colod {
 
+class LookSampler;
+
 struct Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  ///< width × height × 3, top row first
@@ -35,6 +37,8 @@ struct PreviewOptions {
 Image render_preview(const Mesh& mesh, const PreviewOptions& options = {},
                      const std::vector<int>& facet_of_face = {},
                      const std::vector<Color>& color_of_face = {});
+/// What the mesh looks like, without light of its own: the light is in its texture.
+Image render_preview(const Mesh& mesh, const LookSampler& look, const PreviewOptions& options = {});
 /// Points as small discs.
 Image render_preview(const PointCloud& cloud, const PreviewOptions& options = {});
 

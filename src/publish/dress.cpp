@@ -1,6 +1,7 @@
 #include "dress.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "bake/bake.h"
 
@@ -9,6 +10,7 @@ namespace colod {
 namespace {
 
 constexpr double kLeastReach = 0.25;  // metres: a source's own noise, and windows' reveals
+constexpr int kLeastQuality = 45, kQualityStep = 10;
 constexpr double kMostReach = 4;  // metres: a larger part that a layer gave away is not its wall
 
 /// How far from a layer what it stands for may lie.
@@ -37,18 +39,48 @@ void warn(Building& b, const std::string& warning) {
   if (std::ranges::count(b.warnings, warning) == 0) b.warnings.push_back(warning);
 }
 
+/// Bytes that coarser levels' images may take: all together two fifths of the finest's.
+class Allowance {
+ public:
+  /// Of the next coarser level; the finest may take what it likes.
+  std::size_t next() const {
+    return is_first_ ? std::numeric_limits<std::size_t>::max()
+                     : static_cast<std::size_t>(kNextShare * left_);
+  }
+  void take(std::size_t bytes) {
+    left_ = is_first_ ? kCoarserShare * static_cast<double>(bytes)
+                      : std::max(0.0, left_ - static_cast<double>(bytes));
+    is_first_ = false;
+  }
+
+ private:
+  static constexpr double kCoarserShare = 0.4, kNextShare = 0.72;
+  bool is_first_ = true;
+  double left_ = 0;
+};
+
+/// Small atlases are mostly borders of charts, which cost bytes: quality gives way, so far as it
+/// may.
+void encode_within(std::size_t most, const TextureOptions& options, LevelLook& look) {
+  for (look.quality = options.quality;; look.quality -= kQualityStep) {
+    look.image = encode_image(look.raster, options.format, look.quality);
+    const bool is_last = look.quality - kQualityStep < std::min(kLeastQuality, options.quality);
+    if (look.image.size() <= most || is_last || options.format == ImageFormat::kPng) return;
+  }
+}
+
 void dress_level(Building& b, const Baker& baker, const TextureOptions& options,
-                 ExportLevel& level) {
+                 Allowance& allowance, ExportLevel& level) {
   LevelLook& look = level.look;
   const BakeOptions bake{.texel = std::max(level.gsd, options.texel),
                          .largest = options.largest,
                          .reach = reach_of(b, level)};
   BakedTexture baked = baker.bake(level.mesh, bake);
   look.format = options.format;
-  look.quality = options.quality;
   look.width = baked.image.width, look.height = baked.image.height;
-  look.image = encode_image(baked.image, options.format, options.quality);
   look.raster = std::move(baked.image);
+  encode_within(allowance.next(), options, look);
+  allowance.take(look.image.size());
   look.uvs = std::move(baked.uvs);
   note(b, level, baked.facts);
 }
@@ -66,9 +98,11 @@ void dress(Building& b, const TextureOptions& options, const ImageCache& images,
   const Mesh mesh = turned_back(b);
   const Baker baker(mesh, b.source.look, images);
   for (const std::string& w : baker.warnings()) warn(b, w);
-  for (ExportLevel& level : out.levels) {
+  Allowance allowance;
+  for (std::size_t i = out.levels.size(); i-- > 0;) {  // finest first
+    ExportLevel& level = out.levels[i];
     level.look.facet_colors = baker.facet_colors(level.mesh, reach_of(b, level));
-    if (options.mode == Texture::kAuto) dress_level(b, baker, options, level);
+    if (options.mode == Texture::kAuto) dress_level(b, baker, options, allowance, level);
   }
 }
 

@@ -72,6 +72,12 @@ std::vector<Encoded> building_files(const ExportBuilding& out, const SwitchFacts
   return files;
 }
 
+int most_layers(const Scene& scene) {
+  std::size_t most = 0;
+  for (const Building& b : scene.buildings) most = std::max(most, b.layers.size());
+  return static_cast<int>(most);
+}
+
 /// In the order of names: in what order a scene file grew shows in no tile.
 std::vector<Building*> by_name(Scene& scene) {
   std::vector<Building*> sorted;
@@ -82,13 +88,34 @@ std::vector<Building*> by_name(Scene& scene) {
   return sorted;
 }
 
-/// Brings the source back for as long as its layers are dressed.
-void dress_from(Depot& depot, const TextureOptions& options, const ImageCache& images, Building& b,
-                ExportBuilding& out) {
-  if (!is_dressed(b, options)) return;
+/// What all buildings of a scene are written with.
+struct Writer {
+  const OutputOptions& options;
+  SwitchFacts facts;
+  const ImageCache& images;
+  PictureOptions look;  // of pictures of looks
+};
+
+/// A building is not lost for want of its picture.
+void add_looks(const Writer& w, Building& b, const ExportBuilding& out,
+               std::vector<std::string>& pictures) {
+  try {
+    for (std::string& picture : draw_looks(b, out, w.images, w.look))
+      pictures.push_back(std::move(picture));
+  } catch (const std::exception& e) {
+    b.warnings.push_back(std::string("no pictures of its looks: ") + e.what());
+  }
+}
+
+/// Brings the source back for as long as its layers are dressed; `pictures` may be null.
+void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
+                std::vector<std::string>* pictures) {
+  if (!is_dressed(b, w.options.texture)) return;
   depot.get(b);
   try {
-    dress(b, options, images, out);
+    dress(b, w.options.texture, w.images, out);
+    if (pictures && !pictures->empty() && w.options.texture.mode == Texture::kAuto)
+      add_looks(w, b, out, *pictures);
   } catch (const std::exception& e) {  // a failure of its looks alone
     b.warnings.push_back(std::string("is written without textures: ") + e.what());
     for (ExportLevel& level : out.levels) level.look = {};
@@ -103,12 +130,12 @@ void let_go_of_pixels(ExportBuilding& out) {
 }
 
 /// A building that cannot be encoded fails alone.
-void encode_building(ExportBuilding& out, const SwitchFacts& facts, const OutputOptions& a,
-                     const ImageCache& images, Depot& depot, Building& b, const Take& take) {
+void encode_building(ExportBuilding& out, const Writer& w, Depot& depot, Building& b,
+                     std::vector<std::string>* pictures, const Take& take) {
   std::vector<Encoded> files;
-  dress_from(depot, a.texture, images, b, out);
+  dress_from(depot, w, b, out, pictures);
   try {
-    files = building_files(out, facts, a, b);
+    files = building_files(out, w.facts, w.options, b);
   } catch (const std::exception& e) {
     b.failure = b.source.name + ": cannot be exported: " + e.what();
   }
@@ -152,7 +179,7 @@ void check_place(const OutputOptions& a) {
 }
 
 void encode_scene(Scene& scene, const OutputOptions& a, Depot& depot, const Take& take,
-                  const Tell& tell) {
+                  const Tell& tell, Pictures* pictures) {
   Stopwatch watch(scene.export_seconds);
   scene.tileset_failure.clear();
   const SwitchFacts facts = switch_facts(scene.switching);
@@ -162,9 +189,14 @@ void encode_scene(Scene& scene, const OutputOptions& a, Depot& depot, const Take
     if (ExportBuilding out = export_building(*b); !out.levels.empty())
       buildings.push_back(std::move(out)), sources.push_back(b);
   const ImageCache images(static_cast<std::size_t>(a.texture.memory * (1 << 20)));
+  // Half as many pixels as shapes have: there are as many pictures again.
+  const Writer writer{a, facts, images,
+                      picture_options(2 * scene.buildings.size(), most_layers(scene))};
   parallel_for(buildings.size(), [&](std::size_t i) {
     Stopwatch own(sources[i]->timings.export_);
-    encode_building(buildings[i], facts, a, images, depot, *sources[i], take);
+    const auto number = static_cast<std::size_t>(sources[i] - scene.buildings.data());
+    encode_building(buildings[i], writer, depot, *sources[i],
+                    pictures && number < pictures->size() ? &(*pictures)[number] : nullptr, take);
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < buildings.size(); ++i)

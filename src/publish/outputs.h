@@ -36,7 +36,8 @@ struct OutputOptions {
   bool has_no_page = false;  ///< no report.html
 };
 
-/// Per building of the scene, PNGs (report_pictures.h).
+/// Per building of the scene, PNGs of shapes, then JPEGs of looks where it has any
+/// (report_pictures.h).
 using Pictures = std::vector<std::vector<std::string>>;
 
 /// Takes each file as soon as it is made, from several threads. What it throws ends the job.
@@ -52,9 +53,9 @@ void check_place(const OutputOptions& options);
 /// `depot` brings back, makes the files of all buildings, then those of the scene, tileset.json
 /// last; notes their seconds and bytes, and tells where on Earth the tileset is, if anywhere. A
 /// building that cannot be encoded becomes a failed one, a tileset that cannot is told of by
-/// Scene::tileset_failure.
+/// Scene::tileset_failure. Buildings that have `pictures` get pictures of their looks beside them.
 void encode_scene(Scene& scene, const OutputOptions& options, Depot& depot, const Take& take,
-                  const Tell& tell);
+                  const Tell& tell, Pictures* pictures = nullptr);
 
 /// After encode_scene: report.html, unless options say no, and report.json. Without pictures the
 /// page has none.

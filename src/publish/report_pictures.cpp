@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/stopwatch.h"
+#include "image/look_sampler.h"
 
 namespace colod {
 namespace {
@@ -38,9 +39,9 @@ std::uint32_t hash_of(const std::string& text) {
 }
 
 /// A layer in the building's own frame.
-Mesh local_mesh(const Building& b, const Layer& layer) {
+Mesh local_mesh(const Building& b, const PolygonMesh& layer) {
   const Frame turn{Vec3::Zero(), b.frame.yaw};  // layers are parallel to the world's axes
-  Mesh mesh = layer.mesh.mesh();
+  Mesh mesh = layer.mesh();
   for (Vec3& v : mesh.vertices) v = turn.to_local(v);
   return mesh;
 }
@@ -97,6 +98,33 @@ Box frame_of(const Building& b, const std::vector<Mesh>& layers) {
   return box;
 }
 
+/// JPEG of as high a quality as the bytes allow, down to a blur.
+std::string encode_photo(const Image& image, std::size_t most) {
+  Raster raster(image.width, image.height);
+  raster.rgb = image.rgb;
+  std::string bytes;
+  for (int quality = 85; quality >= 25; quality -= 20) {
+    bytes = encode_image(raster, ImageFormat::kJpeg, quality);
+    if (bytes.size() <= most) break;
+  }
+  return bytes;
+}
+
+/// A level of a building in its texture.
+std::string draw_level(const ExportLevel& level, const Mesh& mesh, const PreviewOptions& view,
+                       std::size_t most_bytes) {
+  const ImagePlace place{.path = "a level's own atlas"};
+  ImageCache own(0);
+  own.put(place, level.look.raster);
+  Appearance look;
+  look.images = {place};
+  look.materials.resize(1);
+  look.materials[0].image = 0;
+  look.face_material.assign(mesh.faces.size(), 0);
+  look.uvs = level.look.uvs;
+  return encode_photo(render_preview(mesh, LookSampler(mesh, look, own), view), most_bytes);
+}
+
 }  // namespace
 
 Color layer_color(int layer) { return kLayerColors[static_cast<std::size_t>(layer) % 8]; }
@@ -114,7 +142,7 @@ PictureOptions picture_options(std::size_t buildings, int layers) {
 
 std::vector<std::string> draw_building(const Building& b, const PictureOptions& options) {
   std::vector<Mesh> layers;
-  for (const Layer& layer : b.layers) layers.push_back(local_mesh(b, layer));
+  for (const Layer& layer : b.layers) layers.push_back(local_mesh(b, layer.mesh));
   PreviewOptions view{.width = options.width,
                       .height = options.height,
                       .azimuth_deg = best_azimuth(b.source),
@@ -137,6 +165,28 @@ std::vector<std::string> draw_building(const Building& b, const PictureOptions& 
     pictures.back() = encode_small_png(
         render_preview(layers[k], view, mesh.facet_of_triangle, colors_of(b, mesh)),
         options.most_bytes);
+  }
+  return pictures;
+}
+
+std::vector<std::string> draw_looks(const Building& b, const ExportBuilding& out,
+                                    const ImageCache& images, const PictureOptions& options) {
+  std::vector<Mesh> levels;
+  for (const ExportLevel& level : out.levels) levels.push_back(local_mesh(b, level.mesh));
+  const PreviewOptions view{.width = options.width,
+                            .height = options.height,
+                            .azimuth_deg = best_azimuth(b.source),
+                            .has_edges = false,
+                            .box = frame_of(b, levels)};
+  std::vector<std::string> pictures(1 + b.layers.size());
+  const LookSampler source(b.source.mesh, b.source.look, images);
+  pictures[0] = encode_photo(render_preview(b.source.mesh, source, view), options.most_bytes);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (!out.levels[i].look.has_texture()) continue;
+    const std::string picture = draw_level(out.levels[i], levels[i], view, options.most_bytes);
+    for (std::size_t k = 0; k < b.layers.size(); ++k)
+      if (std::ranges::count(out.levels[i].layers, b.layers[k].layer) > 0)
+        pictures[k + 1] = picture;
   }
   return pictures;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "exporters/exporter.h"
+#include "image/cache.h"
 #include "picture/picture.h"
 #include "pipeline/pipeline.h"
 
@@ -28,6 +30,11 @@ PictureOptions picture_options(std::size_t buildings, int layers);
 /// walls always stand at the same angle, and of the four such
 /// views it is the one from which the source shows most. Deterministic, runs in parallel.
 std::vector<std::string> draw_building(const Building& building, const PictureOptions& options);
+
+/// JPEG bytes of the source and of each layer with their textures, through the same camera; for
+/// layers that wear none an empty string. `building` has its source, `out` the layers' looks.
+std::vector<std::string> draw_looks(const Building& building, const ExportBuilding& out,
+                                    const ImageCache& images, const PictureOptions& options);
 
 /// The colour of what appears on a layer.
 Color layer_color(int layer);

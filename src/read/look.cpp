@@ -175,6 +175,16 @@ void MtlLibrary::parse(const std::string& file, const std::string& text) {
     if (each.material.image >= 0) each.material.color = {1, 1, 1};
 }
 
+void warn_of_unworn(RawFile& raw) {
+  const auto is_textured = [&](int m) {
+    return m >= 0 && raw.materials[static_cast<std::size_t>(m)].image >= 0;
+  };
+  if (!raw.images.empty() &&
+      std::none_of(raw.face_material.begin(), raw.face_material.end(), is_textured))
+    raw.warnings.push_back("its texture '" + fs::path(raw.images[0].path).filename().string() +
+                           "' is on no face: it is left out");
+}
+
 void color_corners(RawFile& raw) {
   if (!raw.point_colors.empty() && raw.corner_colors.empty())
     for (const int c : raw.corners)

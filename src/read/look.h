@@ -52,6 +52,9 @@ int image_number(std::vector<ImagePlace>& images, const ImagePlace& place);
 /// Of a colour as most formats write it, sRGB 0..1.
 Rgb rgb_of(double r, double g, double b);
 
+/// Adds a warning where there are images and no face wears one.
+void warn_of_unworn(RawFile& raw);
+
 /// Gives corners the colours of their points, before points become one. One colour for all is none.
 void color_corners(RawFile& raw);
 

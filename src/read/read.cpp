@@ -157,6 +157,7 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
     sources.push_back(mesh_io::read_cloud(path, raw));
   } else {
     mesh_io::color_corners(raw);
+    mesh_io::warn_of_unworn(raw);
     if (raw.is_soup) {
       const std::vector<int> first = mesh_io::weld(raw.points);
       for (int& c : raw.corners) c = first[c];

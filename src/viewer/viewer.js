@@ -2,7 +2,7 @@
 import { BufferAttribute, CircleGeometry, Color, DirectionalLight, HemisphereLight, Mesh, MeshBasicMaterial, PerspectiveCamera,
   Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { dress, layerColour, meshesOf, paint, showEdges, undress } from './paint.js';
+import { dress, isTextured, layerColour, meshesOf, paint, showEdges, textureBytes, undress } from './paint.js';
 import { idsOf, openTileset } from './tileset.js';
 
 const $ = (id) => document.getElementById(id);
@@ -38,12 +38,27 @@ const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) =>
 scene.add(tiles.group);
 for (const event of ['needs-update', 'needs-render', 'tile-visibility-change']) tiles.addEventListener(event, wake);
 controls.addEventListener('change', wake);
-tiles.addEventListener('load-model', (tile) => { dress(tile.scene); paint(tile.scene, settings.colour.value, selected); });
+tiles.addEventListener('load-model', (tile) => {
+  dress(tile.scene);
+  if (isTextured(tile.scene)) offerTextures();
+  paint(tile.scene, settings.colour.value, selected);
+});
 tiles.addEventListener('dispose-model', (tile) => undress(tile.scene));
 tiles.addEventListener('load-error', ({ url, error }) => {
   setState('failed');
   $('state').textContent = `${url}: ${error.message}`;
 });
+
+/** From the first tile on that has any, textures are what is shown, until the user says otherwise. */
+function offerTextures() {
+  if (!$('texture').hidden) return;
+  $('texture').hidden = $('texture-memory').hidden = false;
+  if (settings.colour.value !== 'plain') return;
+  settings.colour.value = 'texture';
+  $('edges').checked = false;
+  showEdges(false);
+  repaint();
+}
 
 /** A disc that fades into the background. */
 function ground(size) {
@@ -156,6 +171,13 @@ function count(id, value, text = value.toLocaleString('en')) {
   $(id).textContent = text;
 }
 
+/** Of all tiles that are loaded, shown or not. */
+function countTextures() {
+  let held = 0;
+  tiles.forEachLoadedModel((model) => { held += textureBytes(model); });
+  count('textures', held, (held / 2 ** 20).toLocaleString('en', { maximumFractionDigits: 1 }));
+}
+
 const countBytes = () => count('bytes', bytes, Math.round(bytes / 1000).toLocaleString('en'));
 
 function countEverything() {
@@ -164,6 +186,7 @@ function countEverything() {
   count('tiles', tiles.visibleTiles.size);
   count('triangles', visibleMeshes().reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0));
   countBytes();
+  countTextures();
   frames = 0;
   since = now;
   showLayers();

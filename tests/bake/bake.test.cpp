@@ -137,6 +137,103 @@ TEST_CASE("what a wall shows is baked where it is, as large as it is, and not mi
   CHECK(wrong == 0);
 }
 
+/// A house whose faces have cells of an atlas each, turned by an angle of their own; the picture is
+/// a function of the place in space: red and green rise with height and along, blue is a
+/// checkerboard of half metres.
+struct House {
+  static constexpr int kCell = 160;
+  static constexpr double kOwn = 0.06;  // metres a texel
+  TemporaryFolder folder;
+  Mesh mesh = gable_house(6, 5, 4, 2);
+  Appearance look;
+  ImageCache cache{std::size_t{64} << 20};
+
+  static Eigen::Vector3d color(const Vec3& p) {
+    const auto cell = [](double v) { return static_cast<int>(std::floor(v / 0.5 + 1e-4)); };
+    return {20 + 30 * p.z(), 20 + 12 * (p.x() + p.y()),
+            (cell(p.x()) + cell(p.y()) + cell(p.z())) % 2 ? 230.0 : 20.0};
+  }
+  House() {
+    const int faces = static_cast<int>(mesh.faces.size()), width = kCell * faces;
+    Raster raster(width, kCell);
+    for (int f = 0; f < faces; ++f) {
+      const auto [a, b, c] = mesh.faces[f];
+      const Vec3 base = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+      const auto [u, v] = plane_basis(face_cross(mesh, mesh.faces[f]).normalized());
+      const double turn = 0.7 * f;
+      const Vec3 x = std::cos(turn) * u + std::sin(turn) * v;
+      const Vec3 y = std::sin(turn) * u - std::cos(turn) * v;  // down
+      const Vec2 middle(kCell * (f + 0.5), kCell * 0.5);
+      for (int row = 0; row < kCell; ++row)
+        for (int column = f * kCell; column < (f + 1) * kCell; ++column) {
+          const Vec2 q = kOwn * (Vec2(column + 0.5, row + 0.5) - middle);
+          const Eigen::Vector3d rgb = color(base + q.x() * x + q.y() * y);
+          for (int k = 0; k < 3; ++k)
+            raster.at(column, row)[k] =
+                static_cast<std::uint8_t>(std::lround(std::clamp(rgb[k], 0.0, 255.0)));
+        }
+      look.uvs.emplace_back();
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 p = mesh.vertices[mesh.faces[f][k]] - base;
+        const Vec2 at = middle + Vec2(p.dot(x), p.dot(y)) / kOwn;
+        look.uvs.back()[k] = Vec2(at.x() / width, at.y() / kCell).cast<float>();
+      }
+      look.face_material.push_back(0);
+    }
+    const std::string path = (folder / "house.png").string();
+    std::ofstream(path, std::ios::binary) << encode_image(raster, ImageFormat::kPng, 0);
+    look.images = {{.path = path}};
+    look.materials.resize(1);
+    look.materials[0].image = 0;
+  }
+  /// Each face a facet.
+  PolygonMesh layer() const {
+    PolygonMesh out;
+    out.vertices = mesh.vertices;
+    for (const Face& f : mesh.faces) {
+      const int facet = static_cast<int>(out.facets.size());
+      out.facets.push_back({face_cross(mesh, f).normalized(), facet, {{f[0], f[1], f[2]}}});
+      out.triangles.push_back(f);
+      out.facet_of_triangle.push_back(facet);
+    }
+    return out;
+  }
+};
+
+TEST_CASE("every side of a house shows its own place, to half a texel, whatever way charts lie") {
+  const House house;
+  const Baker baker(house.mesh, house.look, house.cache);
+  CHECK(baker.source_texel() == Approx(House::kOwn).epsilon(1e-4));
+  const PolygonMesh layer = house.layer();
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.seen > 0.99);
+  for (std::size_t f = 0; f < layer.triangles.size(); ++f) {
+    const auto& [a, b, c] = layer.triangles[f];
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    int count = 0, wrong = 0, flat = 0;
+    for (double u = 0.03; u < 1; u += 0.031)
+      for (double v = 0.03; u + v < 0.97; v += 0.029) {
+        const Vec3 p =
+            (1 - u - v) * layer.vertices[a] + u * layer.vertices[b] + v * layer.vertices[c];
+        const Eigen::Vector3d rgb = seen_at(t, layer, f, p, t.image), wanted = House::color(p);
+        shift += rgb - wanted, ++count;
+        bool is_plain = true;  // a texel and a half from every border of the checkerboard
+        for (int k = 0; k < 3; ++k) {
+          const double in_cell = p[k] / 0.5 - std::floor(p[k] / 0.5);
+          const bool is_even = layer.facets[f].normal.cwiseAbs()[k] > 0.999;
+          is_plain &= is_even || (in_cell > 0.25 && in_cell < 0.75);
+        }
+        flat += is_plain;
+        wrong += is_plain && std::abs(rgb[2] - wanted[2]) > 3;
+      }
+    INFO("face " << f << " of " << flat << " places");
+    CHECK(flat > 20);
+    CHECK(wrong == 0);
+    CHECK(std::abs(shift[0] / count) < 0.5 * 30 * House::kOwn);  // half a texel's rise
+    CHECK(std::abs(shift[1] / count) < 0.5 * 12 * House::kOwn);
+  }
+}
+
 TEST_CASE("no seam shows where charts of one wall meet, nor two levels down the mip chain") {
   const Wall wall(painted(kSide, [](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(60 + x / 2), static_cast<std::uint8_t>(200 - y / 2), 90};
@@ -188,6 +285,29 @@ TEST_CASE("what the source does not show is the building's mean, neither black n
     REQUIRE(std::abs(t.image.rgb[i + 2] - 50) <= 1);
   }
   CHECK(baker.facet_colors(layer, 0.5) == std::vector<Rgb>(2, Rgb{200, 100, 50}));
+}
+
+TEST_CASE("what nobody saw of a wall has the wall's mean beyond half a metre, and no smear") {
+  // Sky blue at its foot, which a rim would smear; seen above 2 m only.
+  Wall wall(painted(kSide, [](int, int y) {
+    return y > kSide / 2 - 8 ? Rgb{20, 60, 220} : Rgb{200, 100, 50};
+  }));
+  wall.mesh.vertices[0].z() = wall.mesh.vertices[1].z() = 2;
+  wall.look.uvs = {{Vec2f(0, 0.5f), Vec2f(1, 0.5f), Vec2f(1, 0)},
+                   {Vec2f(0, 0.5f), Vec2f(1, 0), Vec2f(0, 0)}};
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0.1);
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.seen == Approx(0.5).margin(0.01));
+  CHECK(t.facts.filled + t.facts.nearest == Approx(0.5).margin(0.01));
+  const auto at = [&](double z) { return seen_at(t, layer, 0, Vec3(2.5, 0.1, z), t.image); };
+  CHECK(at(2.5)[0] == Approx(200).margin(1));
+  CHECK(at(1.95)[2] == Approx(220).margin(2));  // a crack is filled from its rim
+  for (double z = 0.1; z < 1.2; z += 0.1) {
+    INFO(z);
+    CHECK(at(z)[0] == Approx(195).margin(6));  // the mean, in linear light
+    CHECK(at(z)[2] < 90);
+  }
 }
 
 TEST_CASE("an atlas keeps to its largest side, with larger texels") {

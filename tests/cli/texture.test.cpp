@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "image/image.h"
 #include "meshes.h"
@@ -148,6 +149,57 @@ TEST_CASE("bad images cost themselves, with a warning that names file and buildi
     CHECK(points_of(files.at("buildings/house.layer2.obj")) ==
           points_of(bare.at("buildings/house.layer2.obj")));
   }
+}
+
+TEST_CASE("coordinates that are none cost their faces' picture, with a warning, and no shape") {
+  const Folder folder;
+  folder.write_house("bare", "");
+  const std::string bare = points_of(folder.built("bare", kAll).at("buildings/house.layer2.obj"));
+  folder.write("in/wall.png", checkers());
+  for (const char* bad : {"nan nan", "1e38 0.5", "inf 0", ""}) {
+    INFO(bad);
+    folder.write_house("in", kMtl);
+    std::string obj = slurp(folder.path() / "in/house.obj");
+    std::string changed;
+    std::istringstream lines(obj);
+    bool is_first = true;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("vt") && *bad && is_first)
+        line = std::string("vt ") + bad, is_first = false;
+      if (!*bad && line.starts_with("vt")) continue;
+      if (!*bad && line.starts_with("f "))
+        line = std::regex_replace(line, std::regex("/[0-9]+"), "");
+      changed += line + "\n";
+    }
+    folder.write("in/house.obj", changed);
+    const Files files = folder.built("in", kAll);
+    CHECK_THAT(folder.err(),
+               Contains("house: texture 'wall.png'") && Contains("without texture coordinates"));
+    CHECK(points_of(files.at("buildings/house.layer2.obj")) == bare);
+  }
+}
+
+TEST_CASE("looks are measured: a textured house beside itself and beside its layers") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  folder.write("in/wall.png", checkers());
+  const auto judged = [&](const std::string& model, const std::string& options = "") {
+    REQUIRE(folder.run("eval in/house.obj " + model + " --samples 100 --appearance " + options +
+                       " > answer.json") == 0);
+    return nlohmann::json::parse(slurp(folder.path() / "answer.json"))["appearance"];
+  };
+  const nlohmann::json same = judged("in/house.obj", "--gsd 0.1");
+  CHECK(same["psnr"].is_null());  // nothing differs
+  CHECK(same["flip"] == 0);
+  CHECK(same["gsd"] == 0.1);
+  folder.built("in", kAll);
+  const nlohmann::json layer = judged("out/buildings/house.layer2.obj");
+  CHECK(layer["psnr"].get<double>() > 24);
+  CHECK(layer["flip"].get<double>() < 0.1);
+  CHECK(folder.run("preview in/house.obj out/buildings/house.layer2.obj -o sheet.png") == 0);
+  folder.write_house("bare", "");
+  CHECK(folder.run("eval bare/house.obj in/house.obj --appearance") == 3);
+  CHECK_THAT(folder.err(), Contains("neither textures nor colours"));
 }
 
 TEST_CASE("threads and stages change no texel") {

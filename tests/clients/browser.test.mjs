@@ -106,3 +106,42 @@ test('Babylon.js loads a building progressively, coarsest first', async () => {
   assert.deepEqual(errors, []);
   await page.close();
 });
+
+/** Roofs are red and walls green, and not much else is drawn: at borders pixels mix, which from afar are most. */
+function assertPainted(bands, what, least = 0.8) {
+  assert.ok(bands.red > 0.08 && bands.green > 0.08, `${what}: ${JSON.stringify(bands)}`);
+  assert.ok(bands.red + bands.green + bands.blue > least, `${what}: ${JSON.stringify(bands)}`);
+}
+
+for (const [client, folder, stops] of [['cesium', 'textured-earth', [['far', 350], ['middle', 160], ['near', 50]]],
+  ['tiles-renderer', 'textured', [['far', 350], ['middle', 160], ['near', 50]]], ['tiles-renderer', 'textured-webp', [['middle', 160], ['near', 50]]]]) {
+  test(`${client} shows the colours of the source from afar and near (${folder})`, async () => {
+    const { page, errors } = await open(`${client}.html?tileset=/out/${folder}/tileset.json`);
+    const triangles = [];
+    for (const [stop, range] of stops) {
+      const shown = await page.evaluate((metres) => window.client.stop(metres), range);
+      await screenshot(page, `${client}-${folder}-${stop}`);
+      console.log(client, folder, stop, JSON.stringify(shown));
+      assertPainted(shown.bands, stop, stop === 'far' ? 0.5 : 0.8);
+      triangles.push(shown.triangles);
+    }
+    assert.ok(triangles.at(-1) > triangles[0], `another level near than far: ${triangles}`);
+    assert.deepEqual(await page.evaluate(() => window.client.failures), []);
+    assert.deepEqual(errors, []);
+    await page.close();
+  });
+}
+
+for (const client of ['three', 'babylon'])
+  test(`${client} shows the colours of the source on every level`, async () => {
+    const { page, errors } = await open(`${client}.html`);
+    const engine = files(path.join(root, 'textured', 'engine'), '.glb').filter((file) => /house_00_LOD\d\.glb$/.test(file));
+    assert.ok(engine.length >= 2, 'levels');
+    for (const file of [...engine, files(path.join(root, 'textured', 'buildings'), '.glb')[0]]) {
+      const shown = await page.evaluate((url) => window.client.show(url), `/out/${path.relative(root, file)}`);
+      await screenshot(page, `${client}-textured-${path.basename(file, '.glb')}`);
+      assertPainted(shown.bands, file);
+    }
+    assert.deepEqual(errors, []);
+    await page.close();
+  });

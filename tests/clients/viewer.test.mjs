@@ -201,3 +201,49 @@ test('the finest layers can be shown in place, and the slider holds again after 
   assert.equal(await counter(page, 'triangles'), coarse);
   assert.deepEqual(errors, []);
 });
+
+/** Shares of the view's pixels that have the colours which paint.mjs gave roofs and walls. */
+async function bands(page) {
+  const picture = (await page.screenshot({ clip: { x: 260, y: 60, width: 380, height: 360 } })).toString('base64');
+  return page.evaluate(async (png) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const data = context.getImageData(0, 0, image.width, image.height).data;
+    const share = (rgb) => {
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) if (rgb.every((value, k) => Math.abs(value - data[i + k]) <= 20)) ++count;
+      return count / (image.width * image.height);
+    };
+    return { red: share([220, 30, 30]), green: share([30, 160, 40]) };
+  }, picture);
+}
+
+test('textures are shown where there are any, on every level, and their memory is told', async (t) => {
+  const { page, errors } = await view(t, 'textured');
+  assert.equal(await page.isChecked('input[value=texture]'), true);
+  for (const slider of ['8', '4', '0']) {
+    await page.fill('#error', slider);
+    await ready(page);
+    const { red, green } = await bands(page);
+    await screenshot(page, `viewer-textured-${slider}`);
+    assert.ok(red > 0.005 && green > 0.005, `slider at ${slider}: ${red} red, ${green} green`);
+    assert.ok(await counter(page, 'textures') > 0 || slider === '8', 'textures are counted');
+  }
+  for (const mode of ['plain', 'layer', 'building']) {
+    await page.check(`input[value=${mode}]`);
+    await ready(page);
+    const { red, green } = await bands(page);
+    assert.ok(red + green < 0.002, `${mode}: ${red} red, ${green} green`);
+  }
+  await page.check('input[value=texture]');
+  await ready(page);
+  assert.ok((await bands(page)).red > 0.005);
+  assert.deepEqual(errors, []);
+});
+
+test('without textures none are offered', async (t) => {
+  const { page } = await view(t, 'local');
+  assert.equal(await page.isVisible('#texture'), false);
+  assert.equal(await page.isVisible('#texture-memory'), false);
+});

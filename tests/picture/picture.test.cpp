@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "image/look_sampler.h"
 #include "meshes.h"
 
 using namespace colod;
@@ -45,6 +46,20 @@ TEST_CASE("a cube seen from the front fills the frame but for the margin") {
   const Image i = render_preview(test::box_mesh({5, 5, 5}, {7, 7, 7}), kSouth);
   CHECK(i.rgb.size() == 30000);
   CHECK(coverage(i) == Approx(1 / (1.06 * 1.06)).margin(0.03));
+}
+
+TEST_CASE("a look is drawn in its own colours, without light, and backs stay red") {
+  const Mesh box = test::box_mesh({0, 0, 0}, {2, 2, 2});
+  Appearance look;
+  look.colors.assign(12, {Rgb{10, 20, 30}, Rgb{10, 20, 30}, Rgb{10, 20, 30}});
+  look.colors[4] = look.colors[5] = {Rgb{90, 180, 40}, Rgb{90, 180, 40}, Rgb{90, 180, 40}};  // −y
+  const ImageCache images(1 << 20);
+  CHECK(middle(render_preview(box, LookSampler(box, look, images), kSouth)) == Color{90, 180, 40});
+  PreviewOptions east = kSouth;
+  east.azimuth_deg = 90;
+  CHECK(middle(render_preview(box, LookSampler(box, look, images), east)) == Color{10, 20, 30});
+  const Mesh inside = flipped(box);
+  CHECK(middle(render_preview(inside, LookSampler(inside, look, images), kSouth))[0] == 150);
 }
 
 TEST_CASE("azimuth 0 looks from the south, 90 from the east, elevation 90 from above") {

@@ -78,6 +78,24 @@ TEST_CASE("what of an OBJ's looks is missing is told of, and its shape is the sa
   CHECK(broken.mesh.faces == s.mesh.faces);
 }
 
+TEST_CASE("a texture that no face wears is told of, and one that some wear is not") {
+  const TempFolder folder;
+  folder.write("wall.png", kPng);
+  folder.write("m.mtl", "newmtl plain\nKd 1 0 0\nnewmtl wall\nmap_Kd wall.png\n");
+  const std::string triangle =
+      "v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
+  const auto read = [&](const std::string& text) {
+    return read_sources({folder.write("a.obj", text)}).sources.at(0);
+  };
+  const Source unworn = read("mtllib m.mtl\nusemtl plain\n" + triangle);
+  CHECK(warns(unworn, "its texture 'wall.png' is on no face"));
+  CHECK(unworn.look.images.empty());
+  const Source worn =
+      read("mtllib m.mtl\nusemtl plain\n" + triangle + "usemtl wall\nf 1/1 2/2 4/3\n");
+  CHECK(!warns(worn, "no face"));
+  CHECK(worn.look.images.size() == 1);
+}
+
 TEST_CASE("a face keeps its coordinates in its own frame and where it is cut") {
   const TempFolder folder;
   folder.write("wall.png", kPng);
@@ -205,7 +223,10 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
            {"baseColorTexture",
             {{"index", 0},
              {"extensions",
-              {{"KHR_texture_transform", {{"offset", {0.25, 0}}, {"scale", {2, 3}}}}}}}}}}}};
+              {{"KHR_texture_transform",
+                what == "file"  // the specification's example: the image's lower left quarter
+                    ? Json{{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}}
+                    : Json{{"offset", {0.25, 0}}, {"scale", {2, 3}}}}}}}}}}}};
     const ReadResult result = read_sources({folder.write("a.gltf", j.dump())});
     REQUIRE(result.sources.size() == 1);
     const Source& s = result.sources[0];
@@ -220,9 +241,10 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
     CHECK(s.look.materials[0].wrap_u == Wrap::kClamp);
     CHECK(s.look.materials[0].wrap_v == Wrap::kMirror);
     REQUIRE(s.look.uvs.size() == 1);
-    CHECK(s.look.uvs[0][0] == Vec2f(0.25f, 0));
-    CHECK(s.look.uvs[0][1] == Vec2f(2.25f, 0));
-    CHECK(s.look.uvs[0][2] == Vec2f(0.25f, 3));
+    const std::array<Vec2f, 3> wanted =
+        what == "file" ? std::array{Vec2f(0, 1), Vec2f(0, 0.5f), Vec2f(0.5f, 1)}
+                       : std::array{Vec2f(0.25f, 0), Vec2f(2.25f, 0), Vec2f(0.25f, 3)};
+    for (std::size_t c = 0; c < 3; ++c) CHECK((s.look.uvs[0][c] - wanted[c]).norm() < 1e-6f);
     REQUIRE(s.look.images.size() == 1);
     const ImageCache::Entry image_read = ImageCache(1 << 20).get(s.look.images[0]);
     INFO(image_read.problem);

@@ -1,18 +1,14 @@
 // Based on: Williams, Pyramidal parametrics, SIGGRAPH 1983 (trilinear).
 // Differs: one level for both directions, by area; all sums in linear light.
-#include "sampler.h"
+#include "look_sampler.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "parameters.h"
-
-namespace colod::bake {
+namespace colod {
 
 namespace {
-
-using namespace parameters::bake;
 
 int wrapped(int i, int n, Wrap wrap) {
   if (wrap == Wrap::kClamp) return std::clamp(i, 0, n - 1);
@@ -26,6 +22,12 @@ int wrapped(int i, int n, Wrap wrap) {
 double within_period(double u, Wrap wrap) {
   if (wrap == Wrap::kClamp) return std::clamp(u, -1.0, 2.0);
   return u - 2 * std::floor(u / 2);
+}
+
+/// Also what is no number is none.
+bool is_place(const Vec2f& uv) {
+  constexpr float kFarthest = 1e6f;  // periods: float has no places between texels beyond it
+  return std::abs(uv.x()) < kFarthest && std::abs(uv.y()) < kFarthest;
 }
 
 Light bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
@@ -63,39 +65,57 @@ const Pyramid* Lens::look(const ImagePlace& place, int number) {
   return held_[0].pyramid.get();
 }
 
-Sampler::Sampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
+LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
     : mesh_(mesh), look_(look), cache_(cache), texel_of_face_(mesh.faces.size(), 0) {
   std::vector<std::array<int, 2>> sizes;
+  std::vector<std::string> problems;
   for (const ImagePlace& place : look.images) {
     const ImageCache::Facts facts = cache.facts(place);
     sizes.push_back({facts.width, facts.height});
-    if (!facts.problem.empty())
-      warnings_.push_back("texture '" + std::filesystem::path(place.path).filename().string() +
-                          "' " + facts.problem +
-                          (facts.width == 0 ? ": its material's colour stands for it" : ""));
+    problems.push_back(facts.problem);
   }
+  std::vector<int> lost(look.images.size(), 0);
+  measure_texels(sizes, lost);
+  for (std::size_t i = 0; i < look.images.size(); ++i) {
+    const std::string named =
+        "texture '" + std::filesystem::path(look.images[i].path).filename().string() + "' ";
+    if (!problems[i].empty())
+      warnings_.push_back(named + problems[i] +
+                          (sizes[i][0] == 0 ? ": its material's colour stands for it" : ""));
+    if (lost[i] > 0 && sizes[i][0] > 0)
+      warnings_.push_back(named + "is on " + std::to_string(lost[i]) +
+                          " faces without texture coordinates: its mean colour stands for it");
+  }
+}
+
+void LookSampler::measure_texels(const std::vector<std::array<int, 2>>& sizes,
+                                 std::vector<int>& lost) {
   double area = 0, texels = 0, plain_area = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const double own = face_area(mesh, mesh.faces[f]);
+  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+    const double own = face_area(mesh_, mesh_.faces[f]);
     plain_area += own;
-    const int material = look.face_material.empty() ? -1 : look.face_material[f];
-    const int image = material < 0 ? -1 : look.materials[static_cast<std::size_t>(material)].image;
-    if (image < 0 || sizes[static_cast<std::size_t>(image)][0] == 0 || look.uvs.empty()) continue;
+    const int material = look_.face_material.empty() ? -1 : look_.face_material[f];
+    const int image = material < 0 ? -1 : look_.materials[static_cast<std::size_t>(material)].image;
+    if (image < 0 || sizes[static_cast<std::size_t>(image)][0] == 0) continue;
+    if (look_.uvs.empty() || !std::all_of(look_.uvs[f].begin(), look_.uvs[f].end(), is_place)) {
+      ++lost[static_cast<std::size_t>(image)];
+      continue;
+    }
     const auto& size = sizes[static_cast<std::size_t>(image)];
-    const auto& uv = look.uvs[f];
+    const auto& uv = look_.uvs[f];
     const Eigen::Vector2d a = (uv[1] - uv[0]).cast<double>(), b = (uv[2] - uv[0]).cast<double>();
     const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size[0] * size[1];
-    if (!(covered > 0) || !std::isfinite(covered) || !(own > 0)) continue;
+    if (!(covered > 0) || !(own > 0)) continue;
     texel_of_face_[f] = static_cast<float>(std::sqrt(own / covered));
     area += own, texels += covered;
   }
   if (texels > 0)
     texel_ = std::sqrt(area / texels);
-  else if (!mesh.faces.empty())
-    texel_ = std::sqrt(plain_area / static_cast<double>(mesh.faces.size()));
+  else if (!mesh_.faces.empty())
+    texel_ = std::sqrt(plain_area / static_cast<double>(mesh_.faces.size()));
 }
 
-Light Sampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
+Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
   const auto f = static_cast<std::size_t>(face);
   Light light = Light::Ones();
   const Vec3 weight = barycentric(mesh_, mesh_.faces[f], point);
@@ -118,13 +138,13 @@ Light Sampler::sample(int face, const Vec3& point, double spacing, Lens& lens) c
   if (!look_.uvs.empty())
     uv = weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
          weight[2] * look_.uvs[f][2].cast<double>();
-  if (!(uv.cwiseAbs().maxCoeff() < 1e6)) {  // also NaN: the image's mean stands for it
+  if (!is_place(uv.cast<float>())) {
     const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
     return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));
   }
   const double own = texel_of_face_[f] > 0 ? texel_of_face_[f] : spacing;
   return light.cwiseProduct(
-      trilinear(*pyramid, uv, std::min(std::log2(spacing / own), std::log2(kMostLevel)), m));
+      trilinear(*pyramid, uv, std::min(std::log2(spacing / own), std::log2(kMostTexels)), m));
 }
 
-}  // namespace colod::bake
+}  // namespace colod

@@ -1,16 +1,19 @@
-// Inside room `bake` only: what a place on the source looks like.
+// What a place on a surface looks like.
 #pragma once
 
 #include <array>
 #include <memory>
 #include <string>
 
+#include "cache.h"
 #include "core/geometry.h"
-#include "image/cache.h"
 
-namespace colod::bake {
+namespace colod {
 
 using Light = Eigen::Vector3f;  ///< linear, 0..1
+
+/// Texels of an image that a sample covers at most: beyond it charts of its atlas run together.
+inline constexpr double kMostTexels = 4;
 
 /// Images that one thread looks at, so that each place need not ask the cache: the two used last.
 class Lens {
@@ -28,20 +31,25 @@ class Lens {
   std::array<Held, 2> held_;
 };
 
-/// The surface of a source. Keeps references to all that it is given.
-class Sampler {
+/// A mesh with its look. Keeps references to all that it is given.
+class LookSampler {
  public:
   /// Decodes each image once, to learn its size.
-  Sampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache);
+  LookSampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache);
 
   /// What a face looks like at a point of its plane; `spacing`: metres from one sample to the next.
+  /// Where a face has an image and no coordinates, or none that are numbers, the image's mean.
   Light sample(int face, const Vec3& point, double spacing, Lens& lens) const;
   /// Metres, of the source's texels: the mean over its textured area; without images, of its faces.
   double texel() const { return texel_; }
-  /// One line for each image with a fault.
+  const ImageCache& cache() const { return cache_; }
+  /// One line for each image with a fault, or that faces without coordinates wear; names its file.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  /// How large texels are, by face and all in all; how many faces of each image have none.
+  void measure_texels(const std::vector<std::array<int, 2>>& sizes, std::vector<int>& lost);
+
   const Mesh& mesh_;
   const Appearance& look_;
   const ImageCache& cache_;
@@ -50,4 +58,4 @@ class Sampler {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace colod::bake
+}  // namespace colod
