@@ -14,6 +14,7 @@
 #include "exporters/files.h"
 #include "input_options.h"
 #include "job/job.h"
+#include "job/scene_input.h"
 #include "numbers.h"
 #include "output.h"
 #include "pipeline_options.h"
@@ -29,6 +30,7 @@ struct StageArguments {
   std::string prior;                ///< an analysed scene file, or empty
   double gap = -1;                  ///< analyze: instead of the scene file's; negative: not given
   ReadOptions read;
+  SceneChoice choice;
   Options options;
   OutputArguments output;
   RunArguments run;
@@ -38,7 +40,9 @@ int segment(const StageArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  const Inventory inventory = take_inventory(a.inputs, a.read);
+  const Inputs found =
+      open_inputs(a.inputs, a.read, a.choice, {}, [&](const Message& m) { log.message(m); });
+  const Inventory& inventory = found.inventory;
   check_cost(a.options, inventory.building_count());
   Scene problems;
   problems.failures = inventory.failures;
@@ -46,10 +50,10 @@ int segment(const StageArguments& a) {
   problems.buildings.resize(inventory.building_count());
   Store store(a.scene, true);
   store.put_options(a.options);
+  if (!found.attributes.empty()) store.put_attributes(found.attributes);
   std::mutex mutex;
   int done = 0;
-  const auto read = [&](std::size_t file) { return read_file(inventory.files[file], a.read); };
-  for_each_source(inventory, read, [&](Turn turn) {
+  for_each_source(inventory, found.read, [&](Turn turn) {
     const std::size_t position = turn.position;
     const std::string name = turn.source.name, key = segments_key(turn.source, a.options);
     bool is_there;
@@ -211,6 +215,7 @@ int export_files(const StageArguments& a) {
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   stores.front().get_coanalysis(scene);
+  for (const Store& store : stores) store.get_attributes(scene.attributes);
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
@@ -244,6 +249,7 @@ Run add_segment(CLI::App& app) {
   app.add_option("-o,--out", a->scene, "scene file to write or go on with")->required();
   add_input_options(app, a->read);
   add_folder_options(app, a->read);
+  add_scene_options(app, a->choice);
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
   return [a] {
