@@ -73,7 +73,7 @@ constexpr double kDropping = 0.5;  // of the rim of a square of its area: where 
 
 }  // namespace colod::parameters::terrain
 
-// Chosen on bocimi's drawn footprints (development); docs/log/scenes.md has the figures.
+// Chosen on drawn footprints of halls and houses (development); docs/scenes.md has the figures.
 namespace colod::parameters::classes {
 
 constexpr double kLow = 1.5;                   // metres over the ground: lower things are its own
