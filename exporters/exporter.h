@@ -54,6 +54,7 @@ struct ExportBuilding {
   Vec3 origin = Vec3::Zero();       ///< world position of the local origin
   std::vector<ExportLevel> levels;  ///< coarsest first; not empty; layers that failed are absent
   std::string given_name;           ///< as the input writes it, UTF-8; empty: none but `name`
+  std::vector<std::pair<std::string, std::string>> attributes = {};  ///< of its footprint
 };
 
 /// How the levels' gsd came about, for whoever reads the files.

@@ -172,7 +172,8 @@ void check_tile(Walk& walk, const Json& tile, Place place) {
   const std::string uri = tile.value("content", Json::object()).value("uri", "");
   check_numbers(walk, tile, place, box, !has_children && !uri.ends_with(".json"));
   place.above = tile.at("geometricError");
-  follow(walk, tile, place, uri, box);
+  // A tile that shows nothing itself stands above tiles that do: a whole, and what is around it.
+  if (!uri.empty() || !has_children) follow(walk, tile, place, uri, box);
   if (!has_children) return;
   int number = 0;
   for (const Json& child : *children) {

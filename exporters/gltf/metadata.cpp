@@ -1,7 +1,9 @@
 // Based on: EXT_mesh_features, EXT_structural_metadata (3D Tiles Next drafts that 3D Tiles 1.1
 // names).
-// Differs: the same columns everywhere.
+// Differs: the same columns everywhere but for attributes of footprints, which follow.
 #include "metadata.h"
+
+#include <algorithm>
 
 namespace colod {
 
@@ -36,6 +38,43 @@ Json string_column(GltfDocument& document, const std::vector<std::string>& value
 
 Json scalar(const char* type) { return {{"type", "SCALAR"}, {"componentType", type}}; }
 
+/// The name of an attribute as an id of a schema: letters, digits and `_`, no other column's.
+std::string column_id(const std::string& name) {
+  std::string id;
+  for (const char c : name) {
+    const bool is_word =
+        (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+    id += is_word ? c : '_';
+  }
+  if (id.empty() || (id[0] >= '0' && id[0] <= '9')) id = "_" + id;
+  return id;
+}
+
+/// Columns of attributes: id and name, in the order in which features have them.
+std::vector<std::pair<std::string, std::string>> attribute_columns(
+    const std::vector<Feature>& features, const Json& others) {
+  std::vector<std::pair<std::string, std::string>> out;
+  const auto is_taken = [&](const std::string& id) {
+    return others.contains(id) ||
+           std::any_of(out.begin(), out.end(), [&](const auto& c) { return c.first == id; });
+  };
+  for (const Feature& f : features)
+    for (const auto& [name, value] : f.attributes) {
+      if (std::any_of(out.begin(), out.end(), [&](const auto& c) { return c.second == name; }))
+        continue;
+      std::string id = column_id(name);
+      while (is_taken(id)) id += "_";
+      out.emplace_back(id, name);
+    }
+  return out;
+}
+
+std::string value_of(const Feature& feature, const std::string& name) {
+  for (const auto& [own, value] : feature.attributes)
+    if (own == name) return value;
+  return "";
+}
+
 Json schema() {
   Json properties;
   properties["name"] = {{"type", "STRING"}};
@@ -60,9 +99,15 @@ const std::string& shown_name(const ExportBuilding& building) {
 
 Feature feature_of(const ExportBuilding& building, const ExportLevel& level, double deviation,
                    std::size_t faces) {
-  return {building.name, level.layers.back(), level.layers.front(),
-          level.gsd,     deviation,           building.source,
-          faces,         shown_name(building)};
+  return {building.name,
+          level.layers.back(),
+          level.layers.front(),
+          level.gsd,
+          deviation,
+          building.source,
+          faces,
+          shown_name(building),
+          building.attributes};
 }
 
 Json switching_json(const SwitchFacts& facts) {
@@ -100,8 +145,16 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
   table["properties"]["source"] = string_column(document, sources);
   table["properties"]["given_name"] = string_column(document, given_names);
   table["properties"]["faces"]["values"] = add_buffer_view(document, faces);
+  Json described = schema();
+  Json& columns = described["classes"]["building"]["properties"];
+  for (const auto& [id, name] : attribute_columns(features, columns)) {
+    std::vector<std::string> values;
+    for (const Feature& f : features) values.push_back(value_of(f, name));
+    columns[id] = {{"name", as_utf8(name)}, {"type", "STRING"}};
+    table["properties"][id] = string_column(document, values);
+  }
   document.json["extensions"]["EXT_structural_metadata"] = {
-      {"schema", schema()}, {"propertyTables", Json::array({table})}};
+      {"schema", described}, {"propertyTables", Json::array({table})}};
   for (const char* name : {"EXT_mesh_features", "EXT_structural_metadata"})
     document.json["extensionsUsed"].push_back(name);
 }

@@ -15,6 +15,8 @@ struct Feature {
   std::string source;       ///< file; empty where several differ
   std::size_t faces = 0;    ///< triangles as written
   std::string given_name;   ///< as the input writes the name
+  /// Names and values: a column each, empty where others have it alone.
+  std::vector<std::pair<std::string, std::string>> attributes = {};
 };
 
 /// The name for readers: as the input writes it, where it writes one.

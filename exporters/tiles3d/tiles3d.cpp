@@ -281,6 +281,27 @@ Tile assemble(Scene& scene, std::size_t& next) {
   return tile;
 }
 
+/// A root that shows nothing itself above the buildings' and the context's tiles.
+Tile beside_context(const Scene& scene, Tile buildings, std::vector<Encoded>& files) {
+  const TilesOptions& o = scene.options;
+  Tile root;
+  Json children = Json::array();
+  const auto add = [&](Json json, const Box& box, double error) {
+    root.box.extend(box);
+    root.error = std::max(root.error, kRise * error);
+    children.push_back(std::move(json));
+  };
+  add(std::move(buildings.json), buildings.box, buildings.error);
+  for (ContextTile& tile :
+       encode_context(*o.context, scene.frames.front(), o.compression, o.quantization, files))
+    add(std::move(tile.json), tile.box, tile.error);
+  root.error = std::max(root.error, o.target_sse * root.box.diagonal());
+  root.json["boundingVolume"] = box_json(root.box);
+  root.json["geometricError"] = root.error;
+  root.json["children"] = std::move(children);
+  return root;
+}
+
 void check(const std::vector<ExportBuilding>& buildings) {
   for (const ExportBuilding& b : buildings) {
     const bool is_whole = !b.levels.empty() &&
@@ -307,12 +328,15 @@ std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings
   std::size_t next = 0;
   Tile root = assemble(scene, next);
   const TileFrame& frame = scene.frames.front();
+  std::vector<Encoded> around;
+  if (options.context) root = beside_context(scene, std::move(root), around);
   if (frame.is_on_earth()) root.json["transform"] = frame.to_ecef();
   std::vector<Encoded> files = {
       {"tileset.json", dumped(start_tileset(scene, frame, std::move(root)))}};
   files.insert(files.end(), std::make_move_iterator(scene.cells.begin()),
                std::make_move_iterator(scene.cells.end()));
   for (Content& content : scene.contents) files.push_back(std::move(content.file));
+  for (Encoded& file : around) files.push_back(std::move(file));
   return files;
 }
 

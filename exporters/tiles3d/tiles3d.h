@@ -2,6 +2,7 @@
 // measured to.
 #pragma once
 
+#include "context.h"
 #include "exporters/exporter.h"
 
 namespace colod {
@@ -13,7 +14,8 @@ struct TilesOptions {
                                ///< target_sse times the gsd of what it shows
   SwitchFacts switching = {};  ///< pixel_error: what a stand-in's deviation may be
   int largest_texture = 4096;  ///< texels a side of a tile's atlas
-  Placement placement = {};    ///< empty: the frame is local and no place on Earth is made up
+  const ContextTiles* context = nullptr;  ///< what stands around; null: nothing
+  Placement placement = {};  ///< empty: the frame is local and no place on Earth is made up
 };
 
 /// First of the result is tileset.json, last written. Frames have their origin at the middle of the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli.h"
+#include "job/scene_choice.h"
 #include "numbers.h"
 #include "read/read.h"
 
@@ -44,6 +45,39 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
          },
          "how a file is taken apart into buildings: auto (default), none, object, group, component")
       ->check(CLI::IsMember({"auto", "none", "object", "group", "component"}));
+}
+
+/// For subcommands whose INPUT may be a scene.
+inline void add_scene_options(CLI::App& app, SceneChoice& scene) {
+  app.add_option_function<std::string>(
+         "--scene",
+         [&scene](const std::string& v) {
+           scene.mode = v == "buildings" ? SceneMode::kBuildings
+                        : v == "scene"   ? SceneMode::kScene
+                                         : SceneMode::kAuto;
+         },
+         "auto (default): a tileset.json, a folder with one, and a folder with Data/Tile_*/ are "
+         "scenes, all else is buildings; scene: the INPUT is a place with terrain and several "
+         "buildings, each file of it a tile; buildings: each file holds buildings alone")
+      ->check(CLI::IsMember({"auto", "buildings", "scene"}));
+  app.add_option("--footprints", scene.footprints,
+                 "of a scene: the plans of its buildings, in any format that GDAL reads (GeoJSON, "
+                 "GeoPackage, Shapefile, CityJSON, FlatGeobuf); of a scene nowhere on Earth in its "
+                 "own metres")
+      ->check(CLI::ExistingFile);
+  app.add_option("--footprint-id", scene.footprint_id,
+                 "the attribute of --footprints that names buildings; default id, else name");
+  app.add_option_function<std::string>(
+         "--context",
+         [&scene](const std::string& v) {
+           scene.context = v == "none" ? ContextMode::kNone : ContextMode::kAuto;
+         },
+         "of a scene: auto (default) writes what is no building into the same tileset, cut out "
+         "where buildings stand and closed below them; none leaves it out")
+      ->check(CLI::IsMember({"auto", "none"}));
+  app.add_option("--source-level", scene.source_level,
+                 "of a tileset: take tiles so many levels above the finest ones, default 0")
+      ->check(number_between(0, 30));
 }
 
 /// For subcommands whose INPUT may be a folder.

@@ -14,6 +14,7 @@ inline void add_job_options(CLI::App& app, Job& job) {
   add_output_options(app, job.output);
   add_input_options(app, job.read);
   add_folder_options(app, job.read);
+  add_scene_options(app, job.scene);
   add_pipeline_options(app, job.options);
   add_prior_option(app, job.prior);
   app.add_option("--truth", job.truth,

@@ -14,6 +14,7 @@
 #include "exporters/files.h"
 #include "input_options.h"
 #include "job/job.h"
+#include "job/scene_input.h"
 #include "numbers.h"
 #include "output.h"
 #include "pipeline_options.h"
@@ -32,6 +33,7 @@ struct StageArguments {
   std::string prior;                ///< an analysed scene file, or empty
   double gap = -1;                  ///< analyze: instead of the scene file's; negative: not given
   ReadOptions read;
+  SceneChoice choice;
   Options options;
   OutputArguments output;
   RunArguments run;
@@ -61,14 +63,13 @@ void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cel
 }
 
 /// Does what of the inventory is not yet in the scene file; what went wrong is added to `problems`.
-void segment_into(Store& store, const Inventory& inventory, const ReadOptions& options,
+void segment_into(Store& store, const Inventory& inventory, const Reader& read,
                   const Options& pipeline, const Log& log, Scene& problems) {
   store.put_options(pipeline);
   const std::size_t before = problems.buildings.size();
   problems.buildings.resize(before + inventory.building_count());
   std::mutex mutex;
   int done = 0;
-  const auto read = [&](std::size_t file) { return read_file(inventory.files[file], options); };
   for_each_source(inventory, read, [&](Turn turn) {
     const std::size_t position = turn.position;
     const std::string name = turn.source.name, key = segments_key(turn.source, pipeline);
@@ -101,7 +102,8 @@ void segment_cells(const StageArguments& a, const Log& log, Scene& problems) {
     const CellLock lock(path);
     Store store(path, true);
     store.keep_only(names_of(inventory));
-    segment_into(store, inventory, plan.read, plan.options, log, problems);
+    const Reader read = [&](std::size_t f) { return read_file(inventory.files[f], plan.read); };
+    segment_into(store, inventory, read, plan.options, log, problems);
   }
 }
 
@@ -113,12 +115,14 @@ int segment(const StageArguments& a) {
     segment_cells(a, log, problems);
   } else {
     validate(a.options);
-    const Inventory inventory = take_inventory(a.inputs, a.read);
-    check_cost(a.options, inventory.building_count());
-    problems.failures = inventory.failures;
-    problems.warnings = inventory.warnings;
+    const Inputs found =
+        open_inputs(a.inputs, a.read, a.choice, {}, [&](const Message& m) { log.message(m); });
+    check_cost(a.options, found.inventory.building_count());
+    problems.failures = found.inventory.failures;
+    problems.warnings = found.inventory.warnings;
     Store store(a.scene, true);
-    segment_into(store, inventory, a.read, a.options, log, problems);
+    segment_into(store, found.inventory, found.read, a.options, log, problems);
+    if (!found.attributes.empty()) store.put_attributes(found.attributes);
   }
   log_problems(problems, log);
   return exit_code(problems);
@@ -302,6 +306,7 @@ int export_files(const StageArguments& a) {
     scene.failures = std::move(plan.failures);
     scene.warnings = std::move(plan.warnings);
   }
+  for (const Store& store : stores) store.get_attributes(scene.attributes);
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
@@ -356,6 +361,7 @@ Run add_segment(CLI::App& app) {
   add_plan_options(app, a->plan, true);
   add_input_options(app, a->read);
   add_folder_options(app, a->read);
+  add_scene_options(app, a->choice);
   add_pipeline_options(app, a->options);
   add_run_options(app, a->run);
   return [a, &app] {

@@ -40,7 +40,9 @@ std::string decode_base64(const std::string& text) {
   return out;
 }
 
-std::string read_place(const ImagePlace& place, std::size_t most_bytes) {
+}  // namespace
+
+std::string read_image(const ImagePlace& place, std::size_t most_bytes) {
   std::ifstream in(place.path, std::ios::binary | std::ios::ate);
   if (!in) throw std::runtime_error("is missing or cannot be opened");
   const auto size = static_cast<std::size_t>(in.tellg());
@@ -58,6 +60,8 @@ std::string read_place(const ImagePlace& place, std::size_t most_bytes) {
              ? bytes
              : bytes.substr(place.skip, place.take > 0 ? place.take : bytes.npos);
 }
+
+namespace {
 
 /// Which pixels of a side of n the pixel i of half as many covers, and how much of each.
 struct Span {
@@ -171,7 +175,7 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
   if (slot->entry.pyramid || (slot->is_known && slot->size[0] == 0)) return slot->entry;
   slot->is_known = true;
   try {
-    DecodedImage decoded = decode_image(read_place(place, impl_->budget), impl_->budget);
+    DecodedImage decoded = decode_image(read_image(place, impl_->budget), impl_->budget);
     slot->size = {decoded.raster.width, decoded.raster.height};
     slot->entry.problem = decoded.remark;
     slot->entry.pyramid = build(std::move(decoded.raster));

@@ -14,6 +14,9 @@ struct Pyramid {
   std::vector<Raster> levels;
 };
 
+/// The encoded image. Throws std::runtime_error where it cannot be read.
+std::string read_image(const ImagePlace& place, std::size_t most_bytes);
+
 class ImageCache {
  public:
   struct Entry {

@@ -12,6 +12,7 @@
 #include "judge.h"
 #include "publish/report_pictures.h"
 #include "rules/rules.h"
+#include "scene_input.h"
 #include "store/store.h"
 
 namespace colod {
@@ -61,11 +62,16 @@ Product work(const Job& job, const JobHooks& hooks, const Beside& beside, std::s
 
 Product run_job(const std::vector<std::string>& inputs, const Job& job, const JobHooks& hooks) {
   const Beside beside = read_beside(job, hooks);
-  const Inventory inventory = take_inventory(inputs, job.read);
-  const Reader read = [&](std::size_t file) { return read_file(inventory.files[file], job.read); };
-  return work(job, hooks, beside, inventory.building_count(),
+  const Inputs found =
+      open_inputs(inputs, job.read, job.scene, {job.output.crs, job.output.origin}, hooks.tell);
+  return work(job, hooks, beside, found.inventory.building_count(),
               [&](const Hooks& inner, const Prior* prior) {
-                return build_scene(inventory, read, job.options, inner, prior);
+                Scene scene = build_scene(found.inventory, found.read, job.options, inner, prior);
+                scene.attributes = found.attributes;
+                scene.context = found.context;
+                scene.classes = found.classes;
+                scene.found_footprints = found.found_footprints;
+                return scene;
               });
 }
 

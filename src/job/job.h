@@ -11,11 +11,13 @@
 #include "pipeline/pipeline.h"
 #include "publish/outputs.h"
 #include "read/read.h"
+#include "scene_choice.h"
 
 namespace colod {
 
 struct Job {
   ReadOptions read;
+  SceneChoice scene;
   Options options;
   OutputOptions output;
   std::string prior;  ///< an analysed scene file; empty: none
@@ -37,8 +39,8 @@ struct Product {
   std::unique_ptr<Depot> depot;  ///< where the sources lie, which textures are made of
 };
 
-/// The buildings of files and folders. Throws Error{kUsage} or Error{kInput} for what stops the job
-/// as a whole, and Cancelled.
+/// The buildings of files and folders, or of one scene. Throws Error{kUsage} or Error{kInput} for
+/// what stops the job as a whole, and Cancelled.
 Product run_job(const std::vector<std::string>& inputs, const Job& job, const JobHooks& hooks = {});
 
 /// Buildings that are in memory.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -114,6 +116,26 @@ struct OverruledSegment {
   ElementKind kind = ElementKind::kPlain;
 };
 
+/// Names and values that a footprint has beside its id, in its order.
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// What of a place is no building, as a tree of tiles.
+struct Context {
+  struct Node {
+    int parent = -1;             ///< parents come before children
+    double geometric_error = 0;  ///< metres, as the source has it
+    bool is_added = false;       ///< its children join what it shows instead of replacing it
+  };
+  std::vector<Node> nodes;
+  std::function<Source(std::size_t node)> read;  ///< what it shows; thread-safe
+};
+
+/// How much of a place's plan is of one class.
+struct ClassArea {
+  std::string name;  ///< "ground", "building", "plant", "rest"
+  double area = 0;   ///< m²
+};
+
 struct Scene {
   std::vector<Building> buildings;    ///< in the order of the input
   std::vector<ReadFailure> failures;  ///< inputs that could not be read
@@ -126,6 +148,10 @@ struct Scene {
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
   std::string tileset_failure;               ///< why there is none; empty: there is one
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
+  std::map<std::string, Attributes> attributes;  ///< by building's name: of footprints
+  std::shared_ptr<const Context> context;  ///< what is no building; null: nothing, or left out
+  std::vector<ClassArea> classes;          ///< of a place that was taken apart
+  std::string found_footprints;            ///< GeoJSON; empty: none were looked for
   bool has_prior = false;  ///< layers come from another scene that was analysed before
 };
 

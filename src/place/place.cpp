@@ -13,12 +13,12 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <pugixml.hpp>
 #include <regex>
 #include <sstream>
 
 #include "core/error.h"
+#include "local.h"
 
 namespace colod {
 
@@ -30,9 +30,13 @@ constexpr const char* kGeocentric = "EPSG:4978";
 constexpr std::uintmax_t kLargestSidecar = 1 << 20;  // bytes
 constexpr std::size_t kLongestCrs = 16384;           // WKT of compound systems has some 5,000
 constexpr std::size_t kLongestQuote = 80;
-constexpr double kFarthest = 1e8;  // metres: no system's coordinates reach it
 
-/// "a,b" or "a,b,c", blanks allowed around; nothing when it is anything else.
+}  // namespace
+
+std::string shortened(const std::string& text) {
+  return text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "…";
+}
+
 std::optional<std::vector<double>> numbers(const std::string& text) {
   std::vector<double> out;
   std::string part;
@@ -49,6 +53,8 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
   if (out.size() < 2 || out.size() > 3) return {};
   return out;
 }
+
+namespace {
 
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -75,11 +81,6 @@ std::string slurp(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) refuse(path, "cannot be opened");
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A text of any length for a message.
-std::string shortened(const std::string& text) {
-  return text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "…";
 }
 
 /// A system's name or definition; a longer one is none.
@@ -157,32 +158,12 @@ std::vector<fs::path> folders_of(const fs::path& input) {
   return out;
 }
 
-Vec3 geodetic_to_ecef(double phi, double lambda, double height) {
-  constexpr double a = 6378137, f = 1 / 298.257223563, e2 = f * (2 - f);
-  const double n = a / std::sqrt(1 - e2 * std::sin(phi) * std::sin(phi));
-  return {(n + height) * std::cos(phi) * std::cos(lambda),
-          (n + height) * std::cos(phi) * std::sin(lambda), (n * (1 - e2) + height) * std::sin(phi)};
-}
-
 /// Axes east, north and up at a place.
 EarthMap local_at(const Georeference& g) {
-  const auto place = numbers(g.crs.substr(4));
-  const bool is_high = place && place->size() > 2 && std::abs((*place)[2]) > kFarthest;
-  if (!place || is_high || std::abs((*place)[0]) > 90 || std::abs((*place)[1]) > 360)
-    throw Error(Stage::kUsage, g.source,
-                "not a latitude, a longitude and a height: " + shortened(g.crs));
-  const double phi = (*place)[0] * std::numbers::pi / 180;
-  const double lambda = (*place)[1] * std::numbers::pi / 180;
-  const double height = place->size() > 2 ? (*place)[2] : 0;
-  const Vec3 centre = geodetic_to_ecef(phi, lambda, height), offset = g.offset;
-  const Vec3 east(-std::sin(lambda), std::cos(lambda), 0);
-  const Vec3 up(std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda), std::sin(phi));
-  const Vec3 north = up.cross(east);
   EarthMap map;
   map.name = g.crs;
-  map.to_ecef = [=](const Vec3& world) -> Vec3 {
-    const Vec3 p = world + offset;
-    return centre + p.x() * east + p.y() * north + p.z() * up;
+  map.to_ecef = [place = local_place(g), offset = g.offset](const Vec3& world) -> Vec3 {
+    return place.centre + place.axes * (world + offset);
   };
   return map;
 }
@@ -321,6 +302,7 @@ std::optional<Georeference> georeference_from_options(const std::string& crs,
 }
 
 std::optional<Georeference> georeference_beside(const std::string& input) {
+  if (auto own = georeference_of_tileset(input)) return own;
   const std::vector<fs::path> folders = folders_of(input);
   for (const fs::path& folder : folders)
     if (is_there(folder / "metadata.xml"))

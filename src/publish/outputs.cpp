@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "context.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "dress.h"
@@ -148,6 +149,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                   const SwitchFacts& facts, const OutputOptions& a, const Take& take,
                   const Tell& tell) {
   std::vector<Encoded> files;
+  const std::optional<ContextTiles> around = context_tiles(scene, a.texture);
   try {
     files = encode_tileset(buildings,
                            {.compression = a.compression,
@@ -155,6 +157,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .target_sse = a.target_sse,
                             .switching = facts,
                             .largest_texture = a.texture.largest,
+                            .context = around ? &*around : nullptr,
                             .placement = find_placement(scene, a.crs, a.origin, buildings, tell)});
   } catch (const std::exception& e) {
     scene.tileset_failure = e.what();
@@ -182,12 +185,16 @@ void encode_scene(Scene& scene, const OutputOptions& a, Depot& depot, const Take
                   const Tell& tell, Pictures* pictures) {
   Stopwatch watch(scene.export_seconds);
   scene.tileset_failure.clear();
+  if (!scene.found_footprints.empty()) take({"footprints.geojson", scene.found_footprints});
   const SwitchFacts facts = switch_facts(scene.switching);
   std::vector<ExportBuilding> buildings;
   std::vector<Building*> sources;
   for (Building* b : by_name(scene))
-    if (ExportBuilding out = export_building(*b); !out.levels.empty())
+    if (ExportBuilding out = export_building(*b); !out.levels.empty()) {
+      if (const auto own = scene.attributes.find(out.name); own != scene.attributes.end())
+        out.attributes = own->second;
       buildings.push_back(std::move(out)), sources.push_back(b);
+    }
   const ImageCache images(static_cast<std::size_t>(a.texture.memory * (1 << 20)));
   // Half as many pixels as shapes have: there are as many pictures again.
   const Writer writer{a, facts, images,

@@ -253,9 +253,15 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["warnings"] = scene.warnings;
+  for (const ClassArea& c : scene.classes)
+    json["classes"].push_back({{"name", c.name}, {"area", c.area}});
   json["buildings"] = Json::array();
-  for (const Building& b : scene.buildings)
+  for (const Building& b : scene.buildings) {
     json["buildings"].push_back(building_json(b, scene.has_prior));
+    if (const auto own = scene.attributes.find(b.source.name); own != scene.attributes.end())
+      for (const auto& [name, value] : own->second)
+        json["buildings"].back()["attributes"][name] = value;
+  }
   json["failures"] = Json::array();
   for (const ReadFailure& f : scene.failures)
     json["failures"].push_back({{"source", f.path}, {"message", f.message}});

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kMeshes[] = {".obj", ".ply", ".off", ".stl", ".gltf", ".glb"};
+constexpr const char* kMeshes[] = {".obj", ".ply", ".off", ".stl", ".gltf", ".glb", ".b3dm"};
 constexpr const char* kClouds[] = {".xyz", ".pwn", ".pts"};
 constexpr const char* kTables[] = {".asc", ".csv", ".txt"};  // often something else
 constexpr int kMostEntries = 100000;  // of subfolders that are looked through for a count
@@ -35,9 +35,6 @@ constexpr Foreign kForeign[] = {
     {".las", "LAS is not read yet: `pdal translate IN.las OUT.ply` converts it"},
     {".laz", "LAZ is not read yet: `pdal translate IN.laz OUT.ply` converts it"},
     {".e57", "E57 is not read: `pdal translate IN.e57 OUT.ply` converts it"},
-    {".b3dm",
-     "b3dm is not read yet: `npx 3d-tiles-tools b3dmToGlb -i IN.b3dm -o OUT.glb` "
-     "converts it"},
     {".ifc", "IFC is not read: `IfcConvert IN.ifc OUT.glb` converts it"},
     {".gml",
      "CityGML is not read: `citygml-tools to-cityjson IN.gml`, then `cjio IN.json export "
@@ -174,7 +171,7 @@ void add_folder(const std::string& input, bool is_recursive, InputList& list) {
   if (folder.files.empty()) {
     std::string message =
         "the folder holds no file that can be read (obj, ply, off, stl, gltf, "
-        "glb, xyz, pwn, pts, asc, csv, txt)";
+        "glb, b3dm, xyz, pwn, pts, asc, csv, txt)";
     if (!folder.foreign.empty())
       message += "; " + fs::path(folder.foreign[0]).filename().string() + ": " +
                  foreign_advice(folder.foreign[0]);

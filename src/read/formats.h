@@ -109,8 +109,15 @@ RawFile read_off(const std::string& path, const std::string& bytes);
 RawFile read_stl(const std::string& path, const std::string& bytes);
 RawFile read_points(const std::string& path, const std::string& bytes, bool is_pwn);
 RawFile read_ply(const std::string& path, const std::string& bytes);
-/// `options` say which level is read, and what it and the files beside it may take.
-RawFile read_gltf(const std::string& path, const std::string& bytes, const ReadOptions& options);
+/// `options` say which level is read, and what it and the files beside it may take. `begin`: where
+/// in the file `bytes` begin, which go on to its end.
+RawFile read_gltf(const std::string& path, std::string_view bytes, const ReadOptions& options,
+                  std::size_t begin = 0);
+/// A batched model of 3D Tiles: the glTF in it, about its RTC_CENTER.
+RawFile read_b3dm(const std::string& path, const std::string& bytes, const ReadOptions& options);
+
+/// Farther from 0,0,0 than any local coordinates: such are seen from the middle of the Earth.
+constexpr double kEarth = 6e6;
 
 /// Do twenty lines of at least three numbers stand at the head of a text? For files whose names end
 /// in .asc, .csv or .txt, which may hold anything.

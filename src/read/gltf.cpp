@@ -15,7 +15,6 @@ namespace {
 
 using Matrix = Eigen::Matrix4d;
 using tinygltf::Value;
-constexpr double kEarth = 6e6;  // metres from its centre: no local coordinates are as large
 
 Matrix placement(const double* translation, const double* rotation, const double* scale) {
   Eigen::Affine3d t = Eigen::Affine3d::Identity();
@@ -277,10 +276,6 @@ void SceneReader::set_origin() {
   if (rtc && center.size() != 3) gltf_.fail("CESIUM_RTC: its center is not three numbers");
   if (!rtc) return;
   raw_.origin += Vec3(center.data());
-  if (Vec3(center.data()).norm() > kEarth)
-    warnings_.push_back(
-        "its CESIUM_RTC center is seen from the Earth's: the axes stay as they are, so that "
-        "buildings may lie tilted");
 }
 
 /// Arrays that say nothing are none.
@@ -317,9 +312,10 @@ RawFile SceneReader::read(int coarser) {
 
 }  // namespace
 
-RawFile read_gltf(const std::string& path, const std::string& bytes, const ReadOptions& options) {
+RawFile read_gltf(const std::string& path, std::string_view bytes, const ReadOptions& options,
+                  std::size_t begin) {
   try {
-    GltfDocument document = open_gltf(path, bytes, options.input_memory);
+    GltfDocument document = open_gltf(path, bytes, begin, options.input_memory);
     return SceneReader(path, document, options.input_memory).read(options.coarser);
   } catch (const nlohmann::json::exception& e) {  // a member of another type than the format's
     fail(path, std::string("glTF: ") + e.what());

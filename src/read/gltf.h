@@ -40,9 +40,15 @@ struct GltfDocument {
 };
 
 /// Buffers lie in the file, in `data:` URIs, or in files at or below its folder, which take at most
-/// `input_memory` MiB with it. Throws Error{kInput}, also where the file needs an extension that is
-/// not read.
-GltfDocument open_gltf(const std::string& path, std::string_view bytes, double input_memory);
+/// `input_memory` MiB with it. `begin`: where in the file `bytes` begin. Throws Error{kInput}, also
+/// where the file needs an extension that is not read.
+GltfDocument open_gltf(const std::string& path, std::string_view bytes, std::size_t begin,
+                       double input_memory);
+
+/// A document of glTF 1.0 as one of 2.0; `binary` bytes stand behind its JSON. Throws
+/// Error{kInput}.
+nlohmann::json upgrade_gltf1(const std::string& path, const nlohmann::json& old,
+                             std::size_t binary);
 
 /// nullptr: there is none of that name.
 const tinygltf::Value* extension_of(const tinygltf::ExtensionMap& extensions, const char* name);

@@ -91,6 +91,16 @@ struct Chunks {
   std::string_view json, binary;  // of binary 0 bytes: there is none
 };
 
+/// KHR_binary_glTF of glTF 1.0: a header of 20 bytes, JSON, and the buffer.
+Chunks take_old_apart(const std::string& path, std::string_view bytes, std::size_t all,
+                      std::size_t json) {
+  constexpr std::size_t kHeader = 20;
+  if (all > bytes.size() || all < kHeader || json > all - kHeader)
+    fail(path, "truncated: the header says " + std::to_string(all) + " bytes, the file has " +
+                   std::to_string(bytes.size()));
+  return {bytes.substr(kHeader, json), bytes.substr(kHeader + json, all - kHeader - json)};
+}
+
 Chunks take_apart(const std::string& path, std::string_view bytes) {
   if (bytes.substr(0, 4) != "glTF") return {bytes, {}};
   const auto number = [&](std::size_t at) {
@@ -99,7 +109,8 @@ Chunks take_apart(const std::string& path, std::string_view bytes) {
     std::memcpy(&value, bytes.data() + at, 4);
     return value;
   };
-  if (number(4) != 2) fail(path, "GLB version " + std::to_string(number(4)) + ", only 2 is read");
+  if (number(4) == 1) return take_old_apart(path, bytes, number(8), number(12));
+  if (number(4) != 2) fail(path, "GLB version " + std::to_string(number(4)) + ", 1 and 2 are read");
   const auto chunk = [&](std::size_t at) {
     const std::size_t length = number(at);
     if (length > bytes.size() - at - 8)
@@ -322,20 +333,30 @@ tinygltf::Model load(const std::string& path, const std::string& text, std::stri
   return model;
 }
 
+/// By its container, or, in JSON alone, by its lists, which are dictionaries.
+bool is_gltf1(std::string_view bytes, const Json& json) {
+  if (bytes.substr(0, 4) == "glTF") return bytes[4] == 1;
+  return json.contains("accessors") && json["accessors"].is_object();
+}
+
 }  // namespace
 
-GltfDocument open_gltf(const std::string& path, std::string_view bytes, double input_memory) {
+GltfDocument open_gltf(const std::string& path, std::string_view bytes, std::size_t begin,
+                       double input_memory) {
   const Chunks chunks = take_apart(path, bytes);
   check_json(path, chunks.json);
   Json json = Json::parse(chunks.json, keep_value, false);
   if (!json.is_object()) fail(path, "glTF: not JSON");
   const Json asset = json.value("asset", Json::object());
-  if (const std::string version = asset.value("version", "2.0"); !version.starts_with("2"))
-    fail(path, "glTF version " + version.substr(0, 20) + ", only 2 is read");
+  if (is_gltf1(bytes, json))
+    json = upgrade_gltf1(path, json, chunks.binary.size());
+  else if (const std::string version = asset.value("version", "2.0"); !version.starts_with("2"))
+    fail(path, "glTF version " + version.substr(0, 20) + ", 1 and 2 are read");
   GltfDocument document;
   check_extensions(path, json, document.warnings);
   note_losses(json, document.warnings);
-  const std::size_t binary = chunks.binary.empty() ? 0 : chunks.binary.data() - bytes.data();
+  const std::size_t binary =
+      chunks.binary.empty() ? 0 : begin + (chunks.binary.data() - bytes.data());
   document.look = read_gltf_look(path, bytes, binary, json, document.warnings);
   json = drop_shapeless(std::move(json));
   check_sizes(path, json);

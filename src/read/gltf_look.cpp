@@ -14,25 +14,6 @@ namespace colod::mesh_io {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-namespace {
-
-/// A member where it is there and of the right kind, else an empty object or list.
-const Json& member(const Json& json, const char* key, Json::value_t kind = Json::value_t::object) {
-  static const Json none_object = Json::object(), none_list = Json::array();
-  if (json.is_object() && json.contains(key) && json[key].type() == kind) return json[key];
-  return kind == Json::value_t::array ? none_list : none_object;
-}
-
-int index(const Json& json, const char* key, int none = -1) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return none;
-  const double value = json[key].get<double>();
-  return value >= 0 && value < 1e9 ? static_cast<int>(value) : none;
-}
-
-double number(const Json& list, std::size_t i, double none) {
-  return list.is_array() && i < list.size() && list[i].is_number() ? list[i].get<double>() : none;
-}
-
 std::string percent_decoded(const std::string& uri) {
   std::string out;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -51,6 +32,25 @@ std::string percent_decoded(const std::string& uri) {
     }
   }
   return out;
+}
+
+namespace {
+
+/// A member where it is there and of the right kind, else an empty object or list.
+const Json& member(const Json& json, const char* key, Json::value_t kind = Json::value_t::object) {
+  static const Json none_object = Json::object(), none_list = Json::array();
+  if (json.is_object() && json.contains(key) && json[key].type() == kind) return json[key];
+  return kind == Json::value_t::array ? none_list : none_object;
+}
+
+int index(const Json& json, const char* key, int none = -1) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return none;
+  const double value = json[key].get<double>();
+  return value >= 0 && value < 1e9 ? static_cast<int>(value) : none;
+}
+
+double number(const Json& list, std::size_t i, double none) {
+  return list.is_array() && i < list.size() && list[i].is_number() ? list[i].get<double>() : none;
 }
 
 class LookReader {

@@ -46,6 +46,9 @@ class MtlLibrary {
 /// part beside `path`. Empty: there is none.
 std::string find_beside(const std::string& path, const std::string& name);
 
+/// Of a URI.
+std::string percent_decoded(const std::string& uri);
+
 /// Index in `images` of a place, which joins them where it is new.
 int image_number(std::vector<ImagePlace>& images, const ImagePlace& place);
 

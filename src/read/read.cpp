@@ -15,6 +15,8 @@
 #include "formats.h"
 #include "look.h"
 #include "split.h"
+#include "tileset.h"
+#include "whole.h"
 
 namespace colod {
 
@@ -24,26 +26,7 @@ using mesh_io::lower;
 using mesh_io::RawFile;
 using mesh_io::Triangles;
 
-namespace {
-
-/// Text formats are read without their byte order mark.
-RawFile read_raw(const std::string& path, const ReadOptions& options) {
-  const std::string e = lower(fs::path(path).extension().string());
-  if (const std::string advice = mesh_io::foreign_advice(path); !advice.empty())
-    mesh_io::fail(path, advice);
-  if (!mesh_io::is_supported(path)) mesh_io::fail(path, "unknown format '" + e + "'");
-  std::string bytes = mesh_io::read_bytes(path, options.input_memory);
-  if (e == ".stl") return mesh_io::read_stl(path, bytes);
-  if (e == ".glb") return mesh_io::read_gltf(path, bytes, options);
-  bytes = mesh_io::as_text(std::move(bytes));
-  if (e == ".obj") return mesh_io::read_obj(path, bytes);
-  if (e == ".ply") return mesh_io::read_ply(path, bytes);
-  if (e == ".off") return mesh_io::read_off(path, bytes);
-  if (e == ".gltf") return mesh_io::read_gltf(path, bytes, options);
-  return mesh_io::read_points(path, bytes, e == ".pwn");
-}
-
-std::string sanitize(const std::string& name) {
+std::string safe_name(const std::string& name) {
   std::string safe;
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
@@ -57,16 +40,7 @@ std::string sanitize(const std::string& name) {
   return safe;
 }
 
-void check_indices(const std::string& path, const RawFile& raw) {
-  const int n = static_cast<int>(raw.points.size());
-  for (int f = 0; f < raw.face_count(); ++f)
-    for (int c = raw.face_begin[f]; c < raw.face_end(f); ++c)
-      if (raw.corners[c] < 0 || raw.corners[c] >= n)
-        mesh_io::fail(path, "face " + std::to_string(f) + " of " +
-                                std::to_string(raw.face_count()) + " names vertex " +
-                                std::to_string(raw.corners[c]) + " of " + std::to_string(n) +
-                                " (both counted from 0)");
-}
+namespace {
 
 Vec3 to_z_up(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
 Vec3 to_y_up(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
@@ -84,71 +58,15 @@ void place(RawFile& raw, const mesh_io::Reading& how) {
   }
 }
 
-/// Ear clipping takes up to the cube of a polygon's corners: half a second for the most that is
-/// read.
-void check_polygons(const std::string& path, const RawFile& raw) {
-  constexpr int kMostCorners = 5000;
-  for (int f = 0; f < raw.face_count(); ++f)
-    if (const int corners = raw.face_end(f) - raw.face_begin[f]; corners > kMostCorners)
-      mesh_io::fail(path, "face " + std::to_string(f) + " has " + std::to_string(corners) +
-                              " corners, more than the " + std::to_string(kMostCorners) +
-                              " that are read: triangulate it first");
-}
-
-/// Polygons with unusable corners are left out and counted in `dropped`.
-Triangles triangulate(const RawFile& raw, int& dropped) {
-  Triangles out;
-  std::vector<Vec3> ring;
-  for (int f = 0; f < raw.face_count(); ++f) {
-    ring.clear();
-    for (int c = raw.face_begin[f]; c < raw.face_end(f); ++c)
-      ring.push_back(raw.points[raw.corners[c]]);
-    if (!std::all_of(ring.begin(), ring.end(), is_usable)) {
-      ++dropped;
-      continue;
-    }
-    const int* corner = &raw.corners[raw.face_begin[f]];
-    for (const Face& t : mesh_io::triangulate_ring(ring)) {
-      const int first = raw.face_begin[f];
-      out.faces.push_back({corner[t[0]], corner[t[1]], corner[t[2]]});
-      out.corners.push_back({first + t[0], first + t[1], first + t[2]});
-      out.polygon.push_back(f);
-    }
-  }
-  return out;
-}
-
-/// The chosen triangles as one source, with only the vertices that they use, in the file's order.
-Source take(const RawFile& raw, const Triangles& all, const std::vector<int>& chosen) {
-  Source s;
-  std::vector<int> number(raw.points.size(), -1);
-  for (const int t : chosen)
-    for (const int v : all.faces[t]) number[v] = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] < 0) continue;
-    number[v] = static_cast<int>(s.mesh.vertices.size());
-    s.mesh.vertices.push_back(raw.points[v]);
-  }
-  for (const int t : chosen) {
-    const Face& f = all.faces[t];
-    s.mesh.faces.push_back({number[f[0]], number[f[1]], number[f[2]]});
-    if (!raw.face_group.empty()) s.face_object.push_back(raw.face_group[all.polygon[t]]);
-  }
-  s.look = mesh_io::look_of(raw, all.corners, all.polygon, chosen);
-  return s;
-}
-
-bool has_area(const Mesh& m) {
-  return std::any_of(m.faces.begin(), m.faces.end(),
-                     [&](const Face& f) { return face_area(m, f) > 0; });
-}
-
 /// Everything a file says, split as asked; `stem` is what names begin with. Throws when nothing in
 /// it is usable.
 std::vector<Source> validate(const std::string& path, const std::string& stem, RawFile raw,
                              const ReadOptions& options) {
-  check_indices(path, raw);
-  check_polygons(path, raw);
+  mesh_io::check_faces(path, raw);
+  if (raw.is_turned && raw.origin.norm() > mesh_io::kEarth)
+    raw.warnings.push_back(
+        "its coordinates are seen from the middle of the Earth: the axes stay as they are, so that "
+        "buildings may lie tilted; its tileset.json, read as a scene, turns them upright");
   const mesh_io::Reading how = mesh_io::judge(path, raw, options);
   place(raw, how);
   std::vector<Source> sources;
@@ -163,13 +81,14 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
       for (int& c : raw.corners) c = first[c];
     }
     int dropped = 0;
-    const Triangles all = triangulate(raw, dropped);
+    const Triangles all = mesh_io::triangulate(raw, dropped);
     parting = mesh_io::part_buildings(raw, all, options.split);
     std::vector<std::vector<int>> chosen(parting.parts.size());
     for (std::size_t t = 0; t < all.faces.size(); ++t)
       if (const int part = parting.part_of[t]; part >= 0)
         chosen[part].push_back(static_cast<int>(t));
-    for (const std::vector<int>& triangles : chosen) sources.push_back(take(raw, all, triangles));
+    for (const std::vector<int>& triangles : chosen)
+      sources.push_back(mesh_io::take(raw, all, triangles));
     if (dropped > 0)
       raw.warnings.push_back(std::to_string(dropped) +
                              " faces left out: a coordinate is not finite");
@@ -178,10 +97,10 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Source& s = sources[i];
     if (s.is_mesh()) mesh_io::leave_out_strays(s);
-    if (s.cloud.points.empty() && !has_area(s.mesh)) continue;
+    if (s.cloud.points.empty() && !mesh_io::has_area(s.mesh)) continue;
     s.path = path;
     const mesh_io::Part& part = parting.parts[i];
-    s.name = sanitize(part.name.empty() ? stem : stem + "_" + part.name);
+    s.name = safe_name(part.name.empty() ? stem : stem + "_" + part.name);
     s.given_name = part.given.empty() ? stem : part.given;
     s.warnings.insert(s.warnings.begin(), raw.warnings.begin(), raw.warnings.end());
     if (usable.empty() && !parting.message.empty())  // of the file, said once
@@ -197,7 +116,7 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
 }
 
 std::vector<Source> read_file(const std::string& path, const ReadOptions& options) {
-  return validate(path, fs::path(path).stem().string(), read_raw(path, options), options);
+  return validate(path, fs::path(path).stem().string(), mesh_io::read_raw(path, options), options);
 }
 
 RawFile raw_of(const NamedArrays& arrays) {

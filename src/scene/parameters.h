@@ -1,4 +1,4 @@
-// The numbers of the rules scene.ground and scene.hidden.
+// The numbers of the rules scene.ground and scene.hidden, and of whole scenes.
 // The registry in room `rules` says what each does and why it has its value.
 #pragma once
 
@@ -43,3 +43,66 @@ constexpr double kLift = 0.002;       // metres off the face that rays start
 constexpr double kMostlySeen = 0.5;   // of a piece's samples
 
 }  // namespace colod::parameters::hidden
+
+namespace colod::parameters::territory {
+
+// Metres that roofs stand out from a footprint, and that it may be wrong by: maps are drawn to half
+// a metre, eaves stand out by up to one. The shared cut-outs of real scenes have as much around.
+constexpr double kEaves = 1.5;
+
+}  // namespace colod::parameters::territory
+
+namespace colod::parameters::survey {
+
+constexpr double kCell = 0.4;        // metres: finer than walls of sheds, about as photogrammetry
+constexpr double kMostCells = 64e6;  // of a map: a gibibyte
+
+}  // namespace colod::parameters::survey
+
+namespace colod::parameters::terrain {
+
+constexpr double kWidest = 100;     // metres: blocks as wide as halls, to begin with
+constexpr double kNoise = 0.3;      // metres over what is expected, and …
+constexpr double kSlope = 0.12;     // … of a block's side: low roofs fill small blocks
+constexpr double kOnGround = 0.5;   // metres
+constexpr double kJoined = 0.6;     // of a hill's rim that goes on smoothly, drops the rest
+constexpr double kLevelStep = 0.2;  // metres between neighbours that are one level
+constexpr double kLeastLevel = 15;  // m²
+constexpr double kWall = 1.2;       // metres that a roof's rim steps down
+constexpr double kRoofRim = 0.65;   // of its steps that go down: a terrace has as many that go up
+constexpr double kDropping = 0.5;  // of the rim of a square of its area: where a roof ends it drops
+
+}  // namespace colod::parameters::terrain
+
+// Chosen on drawn footprints of halls and houses (development); docs/scenes.md has the figures.
+namespace colod::parameters::classes {
+
+constexpr double kLow = 1.5;                   // metres over the ground: lower things are its own
+constexpr double kWindow = 3.6;                // metres: narrower than half of a small gable roof
+constexpr double kEven = 0.08, kUneven = 0.4;  // metres off a plane: of roofs, of crowns
+constexpr double kGrey = 0.04, kGreen = 0.16;  // of roofs, of leaves
+constexpr double kRoughWeight = 0.7, kGreenWeight = 0.7;
+constexpr double kRoof = 0.4;         // of these weights: what is less is a roof
+constexpr double kCalm = 2;           // metres that a cell's neighbours decide with it
+constexpr double kNarrow = 2.0;       // metres: walls and fences are narrower than roofs
+constexpr double kWallStep = 0.6;     // metres between neighbours
+constexpr double kStep = 0.6;         // metres between roofs of different buildings
+constexpr double kLeastRoof = 10;     // m²: smaller ones join a neighbour …
+constexpr double kTouching = 0.25;    // … that holds this share of their rim
+constexpr double kSurrounded = 0.55;  // of a rim: a level on a roof
+constexpr int kRounds = 10;
+constexpr double kLeastBuilding = 12;  // m²
+constexpr double kHeightShare = 0.7;   // of a roof's cells …
+constexpr double kLeastHeight = 2.2;   // … at least so high
+
+}  // namespace colod::parameters::classes
+
+namespace colod::parameters::outlines {
+
+constexpr double kStraight = 0.6;  // metres off a side: a cell and a half
+constexpr double kSquare = 0.3;    // radians off a main direction
+constexpr double kAreaChange = 0.1;
+constexpr double kLeastPart = 8;   // m²
+constexpr double kLeastHole = 12;  // m², of a courtyard
+
+}  // namespace colod::parameters::outlines

@@ -298,6 +298,26 @@ void Store::put_coanalysis(const Scene& scene) {
   impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
 }
 
+void Store::put_attributes(const std::map<std::string, Attributes>& attributes) {
+  Json json = Json::object();
+  for (const auto& [building, own] : attributes)
+    for (const auto& [name, value] : own) json[building].push_back({name, value});
+  impl_->write("INSERT OR REPLACE INTO meta VALUES('attributes', ?1)")
+      .bind(json.dump(-1, ' ', false, Json::error_handler_t::replace))
+      .run();
+}
+
+void Store::get_attributes(std::map<std::string, Attributes>& attributes) const {
+  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'attributes'");
+  if (!s.step()) return;  // of no scene
+  read_json(s.text(), impl_->path, "attributes", [&](const Json& json) {
+    for (const auto& [building, own] : json.items())
+      for (const Json& pair : own)
+        attributes[building].emplace_back(pair.at(0).get<std::string>(),
+                                          pair.at(1).get<std::string>());
+  });
+}
+
 void Store::get_coanalysis(Scene& scene) const {
   Statement s = impl_->read("SELECT value FROM meta WHERE key = 'coanalysis'");
   if (!s.step())

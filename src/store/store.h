@@ -66,6 +66,10 @@ class Store {
   void put_coanalysis(const Scene& scene);
   void get_coanalysis(Scene& scene) const;
 
+  /// What footprints say of buildings; `get` adds to what is there.
+  void put_attributes(const std::map<std::string, Attributes>& attributes);
+  void get_attributes(std::map<std::string, Attributes>& attributes) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

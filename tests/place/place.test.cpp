@@ -248,3 +248,29 @@ TEST_CASE("several threads may ask at once") {
   for (std::thread& t : threads) t.join();
   CHECK(wrong == std::vector<int>(4, 0));
 }
+
+TEST_CASE("a tileset on Earth says where it is, a local one does not") {
+  const fs::path folder = fs::temp_directory_path() / ("colod-tileset-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const std::string path = (folder / "tileset.json").string();
+  const Georeference jakarta{"ENU:-6.4249,107.3768,40", Vec3::Zero(), "test"};
+  const EarthMap map = place_on_earth(jakarta, Vec3::Zero());
+  const Vec3 middle = map.to_ecef({100, 200, 0});
+  char text[400];
+  std::snprintf(text, sizeof text,
+                R"({"root":{"boundingVolume":{"sphere":[%.6f,%.6f,%.6f,50]},"children":[{}]}})",
+                middle.x(), middle.y(), middle.z());
+  std::ofstream(path) << text;
+  const auto found = georeference_beside(path);
+  REQUIRE(found);
+  CHECK((place_on_earth(*found, Vec3::Zero()).to_ecef(Vec3::Zero()) - middle).norm() < 1e-3);
+  const Vec3 point = map.to_ecef({130, 180, 7});
+  const Vec3 local = (local_from_ecef(*found) * point.homogeneous()).head<3>();
+  CHECK((local - Vec3(30, -20, 7)).norm() < 0.02);  // axes turn by some 2e-5
+  CHECK((place_on_earth(*found, Vec3::Zero()).to_ecef(local) - point).norm() < 1e-6);
+  std::ofstream(path) << R"({"root":{"boundingVolume":{"sphere":[1,2,3,50]}}})";
+  CHECK_FALSE(georeference_of_tileset(path));
+  std::ofstream(path) << R"({"root":{"boundingVolume":{"region":[1.87,-0.11,1.88,-0.10,0,90]}}})";
+  CHECK(georeference_of_tileset(path)->crs.starts_with("ENU:-6.01"));
+  fs::remove_all(folder);
+}

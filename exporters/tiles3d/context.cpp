@@ -1,0 +1,145 @@
+// Based on: 3D Tiles 1.1.
+// Differs: one primitive an image, all unlit, since photogrammetry has its light baked in.
+#include "context.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "exporters/gltf/gltf.h"
+
+namespace colod {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double kRise = 1.01;        // a parent's error is at least this times its children's
+constexpr double kLeastError = 1e-3;  // metres; of a tile that has children
+constexpr int kUntextured = -1;
+
+/// The faces of one image, each corner once for each place in it; glTF axes, rounded to the grid.
+FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& rounded) {
+  using Key = std::tuple<int, float, float, Rgb, bool>;
+  FlatMesh out;
+  std::map<Key, int> numbers;
+  for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f) {
+    if (mesh.face_image[f] != image) continue;
+    const Face& face = mesh.mesh.faces[f];
+    const auto at = [&](std::size_t c) { return rounded[static_cast<std::size_t>(face[c])]; };
+    if (at(0) == at(1) || at(1) == at(2) || at(2) == at(0)) continue;
+    // Unlit: of normals nothing but the side is ever asked for.
+    const bool is_up = from_gltf((at(1) - at(0)).cross(at(2) - at(0))).z() >= 0;
+    Face flat;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec2f uv = image >= 0 ? mesh.uvs[f][c] : Vec2f(0, 0);
+      const Rgb rgb = image >= 0 ? Rgb{} : mesh.face_color[f];
+      const auto [known, is_new] = numbers.try_emplace(Key(face[c], uv.x(), uv.y(), rgb, is_up),
+                                                       static_cast<int>(out.positions.size()));
+      if (is_new) {
+        out.positions.push_back(at(c));
+        out.normals.push_back(to_gltf(Vec3(0, 0, is_up ? 1 : -1)));
+        out.feature_ids.push_back(0);
+        if (image >= 0) out.uvs.push_back(uv);
+        if (image < 0) out.colors.push_back(rgb);
+      }
+      flat[c] = known->second;
+    }
+    out.triangles.push_back(flat);
+  }
+  return out;
+}
+
+LevelLook look_of(const ContextMesh& mesh, int image) {
+  LevelLook look;
+  if (image < 0) {
+    look.facet_colors = {Rgb{}};  // that there are colours
+    return look;
+  }
+  const ContextImage& own = mesh.images[static_cast<std::size_t>(image)];
+  look.uvs.resize(1);  // that there is a texture
+  look.image = own.bytes;
+  look.format = own.format;
+  return look;
+}
+
+/// Empty bytes where the mesh shows nothing.
+std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& name,
+                   Compression compression, double quantization, Box& box) {
+  Box gltf_box;
+  for (Vec3& p : mesh.mesh.vertices) p = frame.local(p), gltf_box.extend(to_gltf(p));
+  if (mesh.mesh.faces.empty()) return {};
+  const QuantizationGrid grid = fit_grid(gltf_box, quantization);
+  std::vector<Vec3> rounded;
+  for (const Vec3& p : mesh.mesh.vertices) rounded.push_back(grid.round(to_gltf(p)));
+  GltfDocument document = start_gltf();
+  if (!frame.is_on_earth()) {
+    const Vec3& o = frame.origin();
+    document.json["asset"]["extras"]["origin"] = {o.x(), o.y(), o.z()};
+  }
+  Json primitives = Json::array();
+  for (int image = kUntextured; image < static_cast<int>(mesh.images.size()); ++image) {
+    const FlatMesh flat = flat_of(mesh, image, rounded);
+    if (flat.triangles.empty()) continue;
+    Box seen;
+    Json primitive = add_primitive(document, flat, grid, compression, &seen);
+    set_look(document, look_of(mesh, image), name + "-" + std::to_string(image), primitive);
+    primitives.push_back(std::move(primitive));
+    box.extend(from_gltf(seen.min)), box.extend(from_gltf(seen.max));
+  }
+  if (primitives.empty()) return {};
+  document.json["meshes"].push_back({{"primitives", primitives}});
+  document.json["nodes"].push_back(
+      {{"name", name}, {"mesh", 0}, {"extras", {{"class", "context"}}}});
+  return finish_glb(std::move(document));
+}
+
+Json box_json(const Box& box) {
+  const Vec3 c = box.center(), h = 0.5 * box.size();
+  return {{"box", {c.x(), c.y(), c.z(), h.x(), 0, 0, 0, h.y(), 0, 0, 0, h.z()}}};
+}
+
+}  // namespace
+
+std::vector<ContextTile> encode_context(const ContextTiles& context, const TileFrame& frame,
+                                        Compression compression, double quantization,
+                                        std::vector<Encoded>& files) {
+  const std::size_t count = context.nodes.size();
+  std::vector<ContextTile> tiles(count);
+  std::vector<Encoded> contents(count);
+  parallel_for(count, [&](std::size_t i) {
+    contents[i].path = "tiles/context/" + std::to_string(i) + ".glb";
+    contents[i].bytes = glb_of(context.mesh(i), frame, "context-" + std::to_string(i), compression,
+                               quantization, tiles[i].box);
+  });
+  std::vector<Json> children(count, Json::array());
+  std::vector<ContextTile> tops;
+  for (std::size_t i = count; i-- > 0;) {
+    ContextTile& tile = tiles[i];
+    const ContextNode& node = context.nodes[i];
+    const bool is_leaf = children[i].empty();
+    if (is_leaf && contents[i].bytes.empty()) continue;
+    tile.error = is_leaf ? 0 : std::max({kLeastError, node.geometric_error, tile.error});
+    tile.json["boundingVolume"] = box_json(tile.box);
+    tile.json["geometricError"] = tile.error;
+    tile.json["refine"] = node.is_added ? "ADD" : "REPLACE";
+    if (!contents[i].bytes.empty()) tile.json["content"]["uri"] = contents[i].path;
+    if (!is_leaf) {
+      std::reverse(children[i].begin(), children[i].end());
+      tile.json["children"] = std::move(children[i]);
+    }
+    if (!contents[i].bytes.empty()) files.push_back(std::move(contents[i]));
+    if (node.parent < 0) {
+      tops.push_back(std::move(tile));
+      continue;
+    }
+    const auto above = static_cast<std::size_t>(node.parent);
+    tiles[above].box.extend(tile.box);
+    tiles[above].error = std::max(tiles[above].error, kRise * tile.error);
+    children[above].push_back(std::move(tile.json));
+  }
+  return tops;
+}
+
+}  // namespace colod

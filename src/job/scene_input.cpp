@@ -1,0 +1,277 @@
+// Based on: own work.
+#include "scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <set>
+#include <sstream>
+
+#include "context.h"
+#include "core/error.h"
+#include "core/stopwatch.h"
+
+namespace colod {
+
+namespace {
+
+constexpr double kLeastCovered = 0.1;  // of a footprint's area, by what faces up over it
+constexpr std::size_t kSurveyImages = std::size_t{128} << 20;  // bytes of decoded images
+constexpr double kRow = 64;  // metres: buildings are read row by row, so that tiles last
+
+void say(const Tell& tell, Level level, const std::string& text) {
+  if (tell) tell({level, text});
+}
+
+/// Empty: not a scene.
+std::string reason_to_part(const std::vector<std::string>& inputs, const SceneChoice& choice) {
+  if (choice.mode == SceneMode::kBuildings) return "";
+  if (choice.mode == SceneMode::kScene && inputs.size() == 1) return "--scene scene says so";
+  std::string why;
+  for (const std::string& input : inputs) {
+    if (!is_tiled_scene(input, why)) continue;
+    if (inputs.size() > 1)
+      throw Error(Stage::kUsage, input,
+                  "is a scene (" + why + "), which is built alone: name no other INPUT");
+    return why;
+  }
+  if (choice.mode == SceneMode::kScene)
+    throw Error(Stage::kUsage, "--scene", "a scene is one INPUT: a tileset, a folder or a mesh");
+  return "";
+}
+
+std::string size_text(const Box& box) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(0) << box.size().x() << " x " << box.size().y() << " m";
+  return text.str();
+}
+
+std::string range_text(const Box& box) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "x " << box.min.x() << " … " << box.max.x()
+       << ", y " << box.min.y() << " … " << box.max.y();
+  return text.str();
+}
+
+Box box_of(const Footprint& f) {
+  Box box;
+  for (const auto& part : f.parts)
+    for (const auto& ring : part)
+      for (const Vec2& p : ring) box.extend(Vec3(p.x(), p.y(), 0));
+  return box;
+}
+
+bool is_over(const Box& a, const Box& b) {
+  return (a.min.head<2>().array() <= b.max.head<2>().array()).all() &&
+         (a.max.head<2>().array() >= b.min.head<2>().array()).all();
+}
+
+/// Where the scene is: by its own transform, else by options and what lies beside it.
+std::optional<Georeference> place_of(const TileTree& tree, const PlaceOptions& options,
+                                     bool& is_ecef) {
+  std::optional<Georeference> own = georeference_of_tileset(tree.path);
+  is_ecef = own.has_value();
+  const bool is_told = (!options.crs.empty() && options.crs != "local") || !options.origin.empty();
+  if (own && is_told)
+    throw Error(Stage::kUsage, options.crs.empty() ? "--origin" : "--crs",
+                tree.path + " says itself where on Earth it is");
+  if (own) return own;
+  if (const auto given = georeference_from_options(options.crs, options.origin)) return given;
+  return options.crs == "local" ? std::nullopt : georeference_beside(tree.path);
+}
+
+/// Footprints that the scene reaches; the rest is told in one line.
+std::vector<Footprint> on_scene(Footprints found, const Box& scene, const std::string& path,
+                                bool is_on_earth, Inventory& inventory) {
+  std::vector<Footprint> kept;
+  Box all;
+  for (Footprint& f : found.all) {
+    const Box box = box_of(f);
+    all.extend(box);
+    if (is_over(box, scene)) kept.push_back(std::move(f));
+  }
+  for (const FootprintProblem& p : found.problems)
+    inventory.failures.push_back({path, "footprint '" + p.id + "' " + p.message});
+  for (const std::string& w : found.warnings) inventory.warnings.push_back(w);
+  if (kept.empty())
+    throw Error(Stage::kInput, path,
+                "none of " + std::to_string(found.all.size()) +
+                    " footprints lies on the scene, which has " + range_text(scene) +
+                    "; theirs have " + range_text(all) +
+                    (is_on_earth ? " there: is their reference system (" +
+                                       (found.crs.empty() ? "none is said" : found.crs) + ") right?"
+                                 : "; the scene is nowhere on Earth, so that footprints must be in "
+                                   "its own metres (--crs and --origin place it)"));
+  if (kept.size() < found.all.size())
+    inventory.warnings.push_back(path + ": " + std::to_string(found.all.size() - kept.size()) +
+                                 " of " + std::to_string(found.all.size()) +
+                                 " footprints lie outside of the scene and are left out");
+  return kept;
+}
+
+/// m² of the plan that what faces up covers, what lies twice counted twice.
+double covered(const Mesh& mesh) {
+  double area = 0;
+  for (const Face& f : mesh.faces) area += std::max(0.0, 0.5 * face_cross(mesh, f).z());
+  return area;
+}
+
+/// The surface over one footprint, as a building of its own.
+Source building_of(const PartedScene& scene, std::size_t b, const std::string& name) {
+  Source source;
+  {
+    Stopwatch watch(source.read_seconds);
+    std::vector<Source> parts;
+    for (const std::size_t t : scene.tiles.over(scene.territories.box(b)))
+      parts.push_back(scene.territories.cut_out(*scene.tiles.get(t), static_cast<int>(b)));
+    const double seconds = source.read_seconds;
+    source = joined(parts);
+    source.read_seconds = seconds;
+  }
+  const Footprint& footprint = scene.footprints[b];
+  source.name = name;
+  source.given_name = footprint.id;
+  source.path = scene.tiles.tree().path;
+  if (covered(source.mesh) < kLeastCovered * scene.territories.area(b))
+    throw Error(Stage::kInput, name,
+                "no surface of the scene lies over its footprint: a gap, or the footprint is "
+                "misplaced");
+  return source;
+}
+
+/// Row by row, so that buildings which follow each other lie over the same tiles.
+std::vector<std::size_t> in_rows(const Territories& territories) {
+  std::vector<std::size_t> order(territories.count());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto key = [&](std::size_t i) {
+    const Box& box = territories.box(i);
+    const double row = std::floor((box.min.y() + box.max.y()) / 2 / kRow);
+    return std::pair(row, (box.min.x() + box.max.x()) / 2);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  return order;
+}
+
+/// Names of files, which differ where upper and lower case do not.
+std::vector<std::string> names_of(const std::vector<Footprint>& footprints) {
+  std::vector<std::string> names;
+  std::set<std::string> used;
+  for (const Footprint& f : footprints) {
+    const std::string base = safe_name(f.id);
+    std::string name = base;
+    const auto lower = [](std::string s) {
+      std::transform(s.begin(), s.end(), s.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      return s;
+    };
+    for (int i = 2; !used.insert(lower(name)).second; ++i) name = base + "_" + std::to_string(i);
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// One building a footprint: a failure of its own where the scene has nothing there.
+void list_buildings(const std::shared_ptr<const PartedScene>& scene, Inputs& inputs) {
+  const std::vector<std::string> names = names_of(scene->footprints);
+  const std::vector<std::size_t> order = in_rows(scene->territories);
+  for (const std::size_t b : order) {
+    inputs.inventory.files.push_back({scene->tiles.tree().path, {names[b]}});
+    inputs.attributes[names[b]] = scene->footprints[b].attributes;
+  }
+  inputs.read = [scene, names, order](std::size_t file) {
+    std::vector<Source> one;
+    one.push_back(building_of(*scene, order[file], names[order[file]]));
+    return one;
+  };
+  inputs.scene = scene;
+}
+
+/// The footprints of a file, or those that the surface tells.
+std::vector<Footprint> footprints_of(const SceneTiles& tiles, const SceneChoice& choice,
+                                     const std::optional<Georeference>& place, const HeightMap& map,
+                                     const SceneClasses& classes, Inputs& out) {
+  if (!choice.footprints.empty())
+    return on_scene(read_footprints(choice.footprints, choice.footprint_id, place), tiles.box(),
+                    choice.footprints, place.has_value(), out.inventory);
+  std::vector<Footprint> found = outline_buildings(map, classes);
+  if (found.empty())
+    throw Error(Stage::kInput, tiles.tree().path,
+                "no building was found on it: --footprints names a file with their plans, --scene "
+                "buildings takes each file for one building");
+  out.found_footprints = footprints_geojson(found, place);
+  return found;
+}
+
+std::vector<ClassArea> areas_of(const HeightMap& map, const SceneClasses& classes) {
+  std::vector<ClassArea> out = {{"ground", 0}, {"building", 0}, {"plant", 0}, {"rest", 0}};
+  for (const SceneClass c : classes.of_cell)
+    if (c != SceneClass::kNothing) out[static_cast<std::size_t>(c) - 1].area += map.cell * map.cell;
+  return out;
+}
+
+/// The tiles, in the scene's frame. Throws Error{kInput} where none can be read.
+SceneTiles open_tiles(const std::string& input, TileTree tree,
+                      const std::optional<Georeference>& place, bool is_ecef, int coarser,
+                      const ReadOptions& read) {
+  const Eigen::Matrix4d to_scene =
+      is_ecef ? local_from_ecef(*place) : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
+  SceneTiles tiles(std::move(tree), to_scene, coarser, !is_ecef, read);
+  if (tiles.count() > 0) return tiles;
+  const std::string first = tiles.failures().empty() ? ""
+                                                     : ": " + tiles.failures()[0].path + ": " +
+                                                           tiles.failures()[0].message;
+  throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
+}
+
+Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
+                  const SceneChoice& choice, const PlaceOptions& options, const Tell& tell) {
+  TileTree tree = list_tiles(input, read);
+  bool is_ecef = false;
+  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
+  SceneTiles tiles = open_tiles(input, std::move(tree), place, is_ecef, choice.source_level, read);
+  Inputs out;
+  out.inventory.failures = tiles.failures();
+  out.inventory.warnings = tiles.warnings();
+  say(tell, Level::kInfo,
+      input + ": taken for a scene, since " + why + ": " + std::to_string(tiles.count()) +
+          " tiles, " + std::to_string(tiles.faces()) + " faces, " + size_text(tiles.box()));
+  HeightMap map;
+  SceneClasses classes;
+  if (choice.footprints.empty() || choice.context != ContextMode::kNone) {
+    map = survey(tiles, kSurveyImages);
+    classes = classify(map);
+    out.classes = areas_of(map, classes);
+  }
+  std::vector<Footprint> footprints = footprints_of(tiles, choice, place, map, classes, out);
+  say(tell, Level::kInfo,
+      std::to_string(footprints.size()) +
+          (choice.footprints.empty() ? " buildings were found on it" : " footprints lie on it"));
+  Territories territories(footprints);
+  const auto scene = std::make_shared<const PartedScene>(
+      PartedScene{std::move(tiles), place, std::move(footprints), std::move(territories),
+                  std::move(map), std::move(classes)});
+  list_buildings(scene, out);
+  if (choice.context != ContextMode::kNone) out.context = context_of(scene, read);
+  return out;
+}
+
+}  // namespace
+
+Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& read,
+                   const SceneChoice& choice, const PlaceOptions& place, const Tell& tell) {
+  if (const std::string why = reason_to_part(inputs, choice); !why.empty())
+    return open_scene(inputs[0], why, read, choice, place, tell);
+  if (!choice.footprints.empty())
+    throw Error(Stage::kUsage, "--footprints",
+                "is for scenes, and these inputs are files of single buildings; --scene scene "
+                "takes one for a scene");
+  Inputs out;
+  out.inventory = take_inventory(inputs, read);
+  out.read = [files = out.inventory.files, read](std::size_t file) {
+    return read_file(files[file], read);
+  };
+  return out;
+}
+
+}  // namespace colod

@@ -1,0 +1,97 @@
+// Based on: own work.
+#include "context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "image/cache.h"
+
+namespace colod {
+
+namespace {
+
+constexpr Rgb kGrey = {160, 160, 160};
+
+/// By how the bytes begin; nothing for what clients do not read.
+std::optional<ImageFormat> format_of(const std::string& bytes) {
+  if (bytes.starts_with("\xFF\xD8")) return ImageFormat::kJpeg;
+  if (bytes.starts_with("\x89PNG")) return ImageFormat::kPng;
+  if (bytes.starts_with("RIFF") && bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0)
+    return ImageFormat::kWebp;
+  return {};
+}
+
+/// The colour of a face that wears no image.
+Rgb plain_color(const Appearance& look, std::size_t f) {
+  std::array<float, 3> light = {1, 1, 1};
+  const int m = look.face_material.empty() ? -1 : look.face_material[f];
+  if (m >= 0) light = look.materials[static_cast<std::size_t>(m)].color;
+  if (m < 0 && look.colors.empty()) return kGrey;
+  for (std::size_t k = 0; k < 3 && !look.colors.empty(); ++k) {
+    float sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += to_linear(look.colors[f][c][k]);
+    light[k] *= sum / 3;
+  }
+  return {to_srgb(light[0]), to_srgb(light[1]), to_srgb(light[2])};
+}
+
+class Dresser {
+ public:
+  Dresser(Source source, const TextureOptions& options)
+      : source_(std::move(source)), options_(options) {}
+
+  ContextMesh dress() {
+    const Appearance& look = source_.look;
+    for (std::size_t f = 0; f < source_.mesh.faces.size(); ++f) {
+      const int m = look.face_material.empty() ? -1 : look.face_material[f];
+      const int image = m < 0 ? -1 : look.materials[static_cast<std::size_t>(m)].image;
+      const bool has_place = image >= 0 && !look.uvs.empty() && look.uvs[f][0].allFinite() &&
+                             look.uvs[f][1].allFinite() && look.uvs[f][2].allFinite();
+      const int number = has_place && options_.mode == Texture::kAuto ? number_of(image) : -1;
+      out_.face_image.push_back(number);
+      out_.face_color.push_back(number < 0 ? plain_color(look, f) : Rgb{});
+      out_.uvs.push_back(number < 0 ? std::array<Vec2f, 3>{} : look.uvs[f]);
+    }
+    out_.mesh = std::move(source_.mesh);
+    return std::move(out_);
+  }
+
+ private:
+  /// −1: it cannot be read, or in no format that clients know.
+  int number_of(int image) {
+    const auto [known, is_new] = numbers_.try_emplace(image, -1);
+    if (!is_new) return known->second;
+    try {
+      const std::size_t most = static_cast<std::size_t>(options_.memory * (1 << 20));
+      std::string bytes = read_image(source_.look.images[static_cast<std::size_t>(image)], most);
+      if (const auto format = format_of(bytes)) {
+        known->second = static_cast<int>(out_.images.size());
+        out_.images.push_back({std::move(bytes), *format});
+      }
+    } catch (const std::exception&) {
+      return -1;  // the face has a plain colour then
+    }
+    return known->second;
+  }
+
+  Source source_;
+  const TextureOptions& options_;
+  ContextMesh out_;
+  std::map<int, int> numbers_;
+};
+
+}  // namespace
+
+std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options) {
+  if (!scene.context) return {};
+  ContextTiles tiles;
+  for (const Context::Node& n : scene.context->nodes)
+    tiles.nodes.push_back({n.parent, n.geometric_error, n.is_added});
+  tiles.mesh = [context = scene.context, options](std::size_t node) {
+    return Dresser(context->read(node), options).dress();
+  };
+  return tiles;
+}
+
+}  // namespace colod

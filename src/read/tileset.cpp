@@ -1,0 +1,343 @@
+// Based on: 3D Tiles 1.0 and 1.1 (OGC 22-025r4).
+// Differs: no file outside the scene's own folder is opened, whatever a URI says; bounding volumes
+// are not asked, since writers get them wrong: where a tile is, its vertices tell.
+#include "tileset.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "files.h"
+#include "look.h"
+#include "whole.h"
+
+namespace colod {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Matrix = Eigen::Matrix4d;
+
+namespace {
+
+constexpr std::size_t kMostTiles = 2'000'000;
+constexpr int kDeepest = 2000;   // nested lists and objects of one tileset: 3 a level of tiles
+constexpr int kMostNested = 64;  // tilesets within tilesets
+
+Json parse(const std::string& path, const ReadOptions& options) {
+  const std::string text = mesh_io::as_text(mesh_io::read_bytes(path, options.input_memory));
+  bool is_too_deep = false;
+  Json json = Json::parse(
+      text,
+      [&](int depth, Json::parse_event_t, Json&) {
+        is_too_deep |= depth > kDeepest;
+        return !is_too_deep;
+      },
+      false);
+  if (is_too_deep) mesh_io::fail(path, "JSON nested too deeply");
+  if (!json.is_object() || !json.contains("root") || !json["root"].is_object())
+    mesh_io::fail(path, "is no tileset: not JSON with a root tile");
+  return json;
+}
+
+/// A member that is an object, else an empty one.
+const Json& object(const Json& json, const char* key) {
+  static const Json none = Json::object();
+  const auto found = json.find(key);
+  return found != json.end() && found->is_object() ? *found : none;
+}
+
+std::string text(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+Matrix transform_of(const std::string& path, const Json& tile) {
+  const auto found = tile.find("transform");
+  if (found == tile.end() || found->is_null()) return Matrix::Identity();
+  Matrix out;
+  bool is_whole = found->is_array() && found->size() == 16;
+  for (std::size_t i = 0; is_whole && i < 16; ++i) {
+    is_whole = (*found)[i].is_number();
+    if (is_whole) out(static_cast<int>(i)) = (*found)[i].get<double>();
+  }
+  if (!is_whole || !out.allFinite()) mesh_io::fail(path, "a tile's transform is not 16 numbers");
+  return out;
+}
+
+/// Of its content or contents, as written.
+std::vector<std::string> uris_of(const Json& tile) {
+  std::vector<std::string> out;
+  const auto add = [&](const Json& content) {
+    const std::string uri = text(content, "uri"), url = text(content, "url");
+    if (!uri.empty() || !url.empty()) out.push_back(uri.empty() ? url : uri);
+  };
+  add(object(tile, "content"));
+  const auto several = tile.find("contents");
+  if (several != tile.end() && several->is_array())
+    for (const Json& content : *several)
+      if (content.is_object()) add(content);
+  return out;
+}
+
+bool is_within(const fs::path& folder, const fs::path& file) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+         folder.end();
+}
+
+class TreeReader {
+ public:
+  TreeReader(const std::string& path, const ReadOptions& options) : options_(options) {
+    tree_.path = path;
+    tree_.is_tileset = true;
+    folder_ = fs::canonical(fs::absolute(path).parent_path());
+  }
+
+  TileTree read() {
+    tree_.nodes.emplace_back();
+    add_tileset(tree_.path, 0);
+    if (std::all_of(tree_.nodes.begin(), tree_.nodes.end(),
+                    [](const TileNode& n) { return n.contents.empty(); })) {
+      const std::string first =
+          tree_.failures.empty() ? ""
+                                 : "; " + tree_.failures[0].path + ": " + tree_.failures[0].message;
+      mesh_io::fail(tree_.path, "names no tile that can be read" + first);
+    }
+    return std::move(tree_);
+  }
+
+ private:
+  struct Step {
+    const Json* tile;
+    int node;  // that is already there
+  };
+
+  /// The tiles of a tileset below a node, whose place its root takes.
+  void add_tileset(const std::string& path, int node) {
+    const Json json = parse(path, options_);
+    const std::string axis = text(object(json, "asset"), "gltfUpAxis");
+    TileUp up = TileUp::kY;
+    if (axis == "Z" || axis == "z") up = TileUp::kZ;
+    if (axis == "X" || axis == "x") up = TileUp::kX;
+    open_.push_back(fs::canonical(path).string());
+    std::vector<Step> steps = {{&json["root"], node}};
+    while (!steps.empty()) {
+      const Step step = steps.back();
+      steps.pop_back();
+      add_tile(path, *step.tile, up, step.node);
+      const auto children = step.tile->find("children");
+      if (children == step.tile->end() || !children->is_array()) continue;
+      for (const Json& child : *children)
+        if (child.is_object()) steps.push_back({&child, new_node(step.node)});
+      if (tree_.nodes.size() > kMostTiles)
+        mesh_io::fail(tree_.path, "has more than " + std::to_string(kMostTiles) + " tiles");
+    }
+    open_.pop_back();
+  }
+
+  int new_node(int parent) {
+    const int node = static_cast<int>(tree_.nodes.size());
+    tree_.nodes.emplace_back();
+    tree_.nodes.back().parent = parent;
+    tree_.nodes[static_cast<std::size_t>(parent)].children.push_back(node);
+    return node;
+  }
+
+  void add_tile(const std::string& path, const Json& tile, TileUp up, int index) {
+    TileNode& node = tree_.nodes[static_cast<std::size_t>(index)];
+    if (node.parent >= 0) {
+      const TileNode& above = tree_.nodes[static_cast<std::size_t>(node.parent)];
+      node.to_root = above.to_root;
+      node.is_added = above.is_added;
+    }
+    node.to_root = node.to_root * transform_of(path, tile);
+    node.up = up;
+    if (const auto error = tile.find("geometricError"); error != tile.end() && error->is_number())
+      node.geometric_error = error->get<double>();
+    const std::string refine = text(tile, "refine");
+    if (refine == "ADD" || refine == "add") node.is_added = true;
+    if (refine == "REPLACE" || refine == "replace") node.is_added = false;
+    if (tile.contains("implicitTiling") ||
+        object(tile, "extensions").contains("3DTILES_implicit_tiling"))
+      return fail(path, "implicit tiling is not read: write the tileset with explicit tiles");
+    for (const std::string& uri : uris_of(tile)) add_content(path, uri, index);
+  }
+
+  void fail(const std::string& path, const std::string& cause) {
+    tree_.failures.push_back({path, cause});
+  }
+
+  /// Failures that are the content's own.
+  void add_content(const std::string& path, const std::string& uri, int node) {
+    const std::string shown = "'" + uri.substr(0, 120) + "'";
+    const std::string name = mesh_io::percent_decoded(uri.substr(0, uri.find_first_of("?#")));
+    const fs::path relative = name;
+    if (name.empty() || relative.is_absolute() || name.find(':') != name.npos)
+      return fail(path, "names " + shown + ", which is not a file of the scene: it is not read");
+    std::error_code error;
+    const fs::path file = fs::weakly_canonical(fs::absolute(path).parent_path() / relative, error);
+    if (error || !is_within(folder_, file))
+      return fail(path, "names " + shown + ", outside of the scene's folder: it is not read");
+    if (!fs::is_regular_file(file, error)) return fail(path, "its tile " + shown + " is missing");
+    if (mesh_io::lower(file.extension().string()) == ".json") return add_external(path, file, node);
+    tree_.nodes[static_cast<std::size_t>(node)].contents.push_back(file.string());
+  }
+
+  /// A tileset that is a tile's content: its root is the tile's only child.
+  void add_external(const std::string& path, const fs::path& file, int node) {
+    if (std::count(open_.begin(), open_.end(), file.string()) > 0)
+      return fail(path, "leads back to '" + file.filename().string() + "', which it is part of");
+    if (open_.size() > kMostNested) return fail(path, "too many tilesets within tilesets");
+    try {
+      add_tileset(file.string(), new_node(node));
+    } catch (const Error& e) {
+      fail(file.string(), std::string(e.what()).substr(e.item.size() + 2));
+    }
+  }
+
+  const ReadOptions& options_;
+  fs::path folder_;  // that nothing leaves
+  TileTree tree_;
+  std::vector<std::string> open_;  // tilesets from the first to the one in hand
+};
+
+TileTree list_meshes(const std::string& input, const ReadOptions& options) {
+  const bool is_folder = fs::is_directory(input);
+  mesh_io::InputList list = mesh_io::list_files({input}, is_folder || options.is_recursive);
+  TileTree tree;
+  tree.path = input;
+  tree.warnings = std::move(list.warnings);
+  tree.nodes.emplace_back();
+  tree.nodes[0].is_added = true;
+  for (const std::string& file : list.files) {
+    tree.nodes[0].children.push_back(static_cast<int>(tree.nodes.size()));
+    tree.nodes.emplace_back();
+    tree.nodes.back().contents = {file};
+    tree.nodes.back().parent = 0;
+  }
+  return tree;
+}
+
+/// Tiles that the formats know and that are no surface.
+std::string foreign_tile(const std::string& magic) {
+  if (magic == "i3dm") return "i3dm (instances of models) is not read";
+  if (magic == "pnts") return "pnts (points) is not read";
+  if (magic == "cmpt") return "cmpt (a composite) is not read";
+  return "";
+}
+
+std::string magic_of(const std::string& path) {
+  std::string magic(4, '\0');
+  std::ifstream(path, std::ios::binary).read(magic.data(), 4);
+  return magic;
+}
+
+/// A tile's coordinates, z up by the format, as its tileset says that they are meant.
+Vec3 as_meant(TileUp up, const Vec3& p) {
+  switch (up) {
+    case TileUp::kY:
+      return p;
+    case TileUp::kZ:
+      return {p.x(), p.z(), -p.y()};
+    case TileUp::kX:
+      return {p.y(), p.z(), p.x()};
+  }
+  return p;
+}
+
+mesh_io::RawFile read_content(const std::string& path, const ReadOptions& options) {
+  const std::string magic = magic_of(path);
+  if (const std::string cause = foreign_tile(magic); !cause.empty()) mesh_io::fail(path, cause);
+  if (magic == "b3dm")
+    return mesh_io::read_b3dm(path, mesh_io::read_bytes(path, options.input_memory), options);
+  if (magic == "glTF")
+    return mesh_io::read_gltf(path, mesh_io::read_bytes(path, options.input_memory), options);
+  return mesh_io::read_raw(path, options);
+}
+
+}  // namespace
+
+bool is_tiled_scene(const std::string& input, std::string& why) {
+  std::error_code error;
+  fs::path file = input;
+  if (fs::is_directory(input, error)) file = file / "tileset.json";
+  if (mesh_io::lower(file.extension().string()) == ".json" && fs::is_regular_file(file, error)) {
+    std::string head(4096, '\0');
+    std::ifstream(file, std::ios::binary).read(head.data(), static_cast<long>(head.size()));
+    why = file.filename().string() + " is a tileset";
+    const bool is_tileset =
+        head.find("\"asset\"") != head.npos || head.find("\"geometricError\"") != head.npos;
+    return is_tileset && head.find("\"generator\": \"colod\"") == head.npos;
+  }
+  fs::directory_iterator at(fs::path(input) / "Data", error);
+  for (const fs::directory_iterator end; !error && at != end; at.increment(error)) {
+    if (!at->path().filename().string().starts_with("Tile_")) continue;
+    why = "its folder Data holds " + at->path().filename().string();
+    return true;
+  }
+  return false;
+}
+
+TileTree list_tiles(const std::string& input, const ReadOptions& options) {
+  std::error_code error;
+  fs::path file = input;
+  if (fs::is_directory(input, error) && fs::is_regular_file(file / "tileset.json", error))
+    file = file / "tileset.json";
+  if (!fs::exists(file, error)) throw Error(Stage::kInput, input, "no such file or folder");
+  if (mesh_io::lower(file.extension().string()) == ".json")
+    return TreeReader(file.string(), options).read();
+  return list_meshes(input, options);
+}
+
+std::vector<int> finest_nodes(const TileTree& tree, int coarser) {
+  std::vector<int> height(tree.nodes.size(), 0);  // levels that show something below
+  for (std::size_t i = tree.nodes.size(); i-- > 1;) {
+    const TileNode& node = tree.nodes[i];
+    int& above = height[static_cast<std::size_t>(node.parent)];
+    above = std::max(above, height[i] + (node.contents.empty() ? 0 : 1));
+  }
+  std::vector<int> out, open = {0};
+  while (!open.empty()) {
+    const int i = open.back();
+    open.pop_back();
+    const TileNode& node = tree.nodes[static_cast<std::size_t>(i)];
+    const bool is_end = height[static_cast<std::size_t>(i)] <= coarser && !node.contents.empty();
+    if (!node.contents.empty() && (is_end || node.is_added || node.children.empty()))
+      out.push_back(i);
+    if (is_end && !node.is_added) continue;
+    open.insert(open.end(), node.children.begin(), node.children.end());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Source read_tile(const TileNode& node, const std::string& content, const Matrix& to_scene,
+                 const ReadOptions& options) {
+  mesh_io::RawFile raw = read_content(content, options);
+  if (raw.face_count() == 0) return {};
+  mesh_io::check_faces(content, raw);
+  const Matrix matrix = to_scene * node.to_root;
+  const double unit = options.unit.value_or(1);
+  for (Vec3& p : raw.points) {
+    const Vec3 own = raw.is_turned ? as_meant(node.up, p) : p;
+    p = (matrix * Vec3(own * unit + raw.origin).homogeneous()).head<3>();
+  }
+  mesh_io::color_corners(raw);
+  if (raw.is_soup) {
+    const std::vector<int> first = mesh_io::weld(raw.points);
+    for (int& c : raw.corners) c = first[static_cast<std::size_t>(c)];
+  }
+  int dropped = 0;
+  const mesh_io::Triangles all = mesh_io::triangulate(raw, dropped);
+  std::vector<int> chosen(all.faces.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = static_cast<int>(i);
+  Source source = mesh_io::take(raw, all, chosen);
+  source.path = content;
+  source.warnings = std::move(raw.warnings);
+  if (dropped > 0)
+    source.warnings.push_back(std::to_string(dropped) +
+                              " faces left out: a coordinate is not finite");
+  return source;
+}
+
+}  // namespace colod

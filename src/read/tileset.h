@@ -1,0 +1,56 @@
+// A scene that is cut into tiles: what 3D Tiles or a folder of meshes say of them, and one tile at
+// a time, so that memory follows a tile and not the scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "read.h"
+
+namespace colod {
+
+enum class TileUp { kY, kZ, kX };  ///< the axis of a tile's glTF that points up in the tile
+
+/// A tile of the tree, or a place in it that shows nothing itself.
+struct TileNode {
+  std::vector<std::string> contents;                      ///< files that it shows; mostly one
+  Eigen::Matrix4d to_root = Eigen::Matrix4d::Identity();  ///< the tile's frame → the scene's
+  TileUp up = TileUp::kY;
+  double geometric_error = 0;  ///< metres, as the tileset has it
+  bool is_added = false;       ///< its children join what it shows instead of replacing it
+  int parent = -1;             ///< −1: the root
+  std::vector<int> children;
+};
+
+/// All tiles of a scene, none of which has been read.
+struct TileTree {
+  std::string path;                   ///< the tileset.json, or the folder
+  std::vector<TileNode> nodes;        ///< parents before children; 0 is the root
+  std::vector<ReadFailure> failures;  ///< tiles and tilesets that are missing or not allowed
+  std::vector<std::string> warnings;
+  bool is_tileset = false;  ///< else meshes in the scene's frame, each a tile of its own
+};
+
+/// A name that is safe as a file's, on any system: letters, digits, `-`, `_` and `.`.
+std::string safe_name(const std::string& name);
+
+/// Whether an INPUT is a scene by what it is: a tileset.json that colod did not write, a folder
+/// with one, or one with meshes in Data/Tile_*/. `why` says what tells it.
+bool is_tiled_scene(const std::string& input, std::string& why);
+
+/// 3D Tiles 1.0 and 1.1: external tilesets, transforms, content.url and content.uri, contents,
+/// `content: null`, asset.gltfUpAxis. What lies outside the folder of the tileset that is named,
+/// what leads back to itself and implicit tiling are failures of their own. Of another folder, or a
+/// mesh, each file is a tile. Throws Error{kInput} where there is nothing to read.
+TileTree list_tiles(const std::string& input, const ReadOptions& options = {});
+
+/// The nodes that together show all of the scene once: `coarser` levels above the tiles without
+/// children, and what these add to.
+std::vector<int> finest_nodes(const TileTree& tree, int coarser = 0);
+
+/// What a node shows, in the frame of `to_scene` · its own. Textures stay in their files. Throws
+/// Error{kInput} for a content that cannot be read; one without faces is empty.
+Source read_tile(const TileNode& node, const std::string& content, const Eigen::Matrix4d& to_scene,
+                 const ReadOptions& options = {});
+
+}  // namespace colod

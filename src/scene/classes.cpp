@@ -1,0 +1,258 @@
+// Based on: height over ground, planarity and greenness as airborne mapping uses them (F.
+// Rottensteiner et al., ISPRS benchmark, 2014).
+// Differs: decided for patches of even surface, which trees fall apart into, and not for cells; a
+// block is parted where its patches lie at different heights.
+#include "classes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+
+#include "core/union_find.h"
+#include "flatness.h"
+#include "parameters.h"
+#include "terrain.h"
+
+namespace colod {
+
+namespace {
+
+using namespace parameters::classes;
+
+/// Neighbours along rows and columns.
+template <typename Body>
+void for_each_neighbour(const HeightMap& map, std::size_t i, Body body) {
+  const auto w = static_cast<std::size_t>(map.width);
+  const std::size_t x = i % w, y = i / w;
+  if (x > 0) body(i - 1);
+  if (x + 1 < w) body(i + 1);
+  if (y > 0) body(i - w);
+  if (y + 1 < static_cast<std::size_t>(map.height)) body(i + w);
+}
+
+/// −1 … 1: how much green stands out of a colour's own brightness.
+float greenness(const Rgb& rgb) {
+  const float r = rgb[0], g = rgb[1], b = rgb[2], all = r + g + b;
+  return all > 0 ? (2 * g - r - b) / all : 0;
+}
+
+/// The sum over a square window about each cell, of cells that count.
+class WindowMean {
+ public:
+  WindowMean(const HeightMap& map, int radius) : map_(map), radius_(radius) {}
+
+  /// NaN where no cell of the window counts.
+  std::vector<float> operator()(const std::vector<float>& values) const {
+    const auto w = static_cast<std::size_t>(map_.width) + 1;
+    std::vector<double> sums(w * (static_cast<std::size_t>(map_.height) + 1), 0), counts = sums;
+    for (int y = 0; y < map_.height; ++y)
+      for (int x = 0; x < map_.width; ++x) {
+        const float v = values[map_.at(x, y)];
+        const std::size_t to =
+            (static_cast<std::size_t>(y) + 1) * w + static_cast<std::size_t>(x) + 1;
+        const bool is_known = !std::isnan(v);
+        sums[to] = (is_known ? v : 0) + sums[to - 1] + sums[to - w] - sums[to - w - 1];
+        counts[to] = is_known + counts[to - 1] + counts[to - w] - counts[to - w - 1];
+      }
+    std::vector<float> out(values.size(), NAN);
+    for (int y = 0; y < map_.height; ++y)
+      for (int x = 0; x < map_.width; ++x) {
+        const auto x0 = static_cast<std::size_t>(std::max(0, x - radius_)),
+                   y0 = static_cast<std::size_t>(std::max(0, y - radius_)),
+                   x1 = static_cast<std::size_t>(std::min(map_.width, x + radius_ + 1)),
+                   y1 = static_cast<std::size_t>(std::min(map_.height, y + radius_ + 1));
+        const auto over = [&](const std::vector<double>& all) {
+          return all[y1 * w + x1] - all[y0 * w + x1] - all[y1 * w + x0] + all[y0 * w + x0];
+        };
+        if (const double count = over(counts); count > 0.5)
+          out[map_.at(x, y)] = static_cast<float>(over(sums) / count);
+      }
+    return out;
+  }
+
+ private:
+  const HeightMap& map_;
+  int radius_;
+};
+
+float part(float value, double from, double to) {
+  return std::clamp(static_cast<float>((value - from) / (to - from)), 0.0f, 1.0f);
+}
+
+/// Where something stands: 0 like a roof … 1 like a tree; NaN where nothing does.
+std::vector<float> plantness(const HeightMap& map, const std::vector<float>& ground) {
+  const Flatness flat =
+      measure_flatness(map, static_cast<int>(std::lround(kWindow / map.cell / 2)));
+  std::vector<float> out(map.size(), NAN);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!(map.top[i] - ground[i] > kLow)) continue;
+    out[i] = static_cast<float>(kRoughWeight) * part(flat.roughness[i], kEven, kUneven);
+    if (!map.color.empty())
+      out[i] += static_cast<float>(kGreenWeight) * part(greenness(map.color[i]), kGrey, kGreen);
+  }
+  return WindowMean(map, static_cast<int>(std::lround(kCalm / map.cell / 2)))(out);
+}
+
+/// Whether a cell lies well below one beside it: part of a melted wall.
+bool is_on_wall(const HeightMap& map, std::size_t i) {
+  bool is_low = false;
+  for_each_neighbour(map, i, [&](std::size_t j) { is_low |= map.top[j] - map.top[i] > kWallStep; });
+  return is_low;
+}
+
+/// Regions of cells that were told apart.
+struct Regions {
+  std::vector<int> of_cell;  ///< −1: none
+  std::vector<double> cells;
+};
+
+/// Connected by steps lower than `step`.
+Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, double step) {
+  Regions out{std::vector<int>(map.size(), -1), {}};
+  for (std::size_t start = 0; start < map.size(); ++start) {
+    if (!is_in[start] || out.of_cell[start] >= 0) continue;
+    const int number = static_cast<int>(out.cells.size());
+    out.cells.push_back(0);
+    std::vector<std::size_t> open = {start};
+    out.of_cell[start] = number;
+    while (!open.empty()) {
+      const std::size_t i = open.back();
+      open.pop_back();
+      ++out.cells.back();
+      for_each_neighbour(map, i, [&](std::size_t j) {
+        if (is_in[j] && out.of_cell[j] < 0 && std::abs(map.top[i] - map.top[j]) < step)
+          out.of_cell[j] = number, open.push_back(j);
+      });
+    }
+  }
+  return out;
+}
+
+/// Cells beside a region at its height join it: those at the foot of a higher roof.
+void take_rims(const HeightMap& map, const std::vector<char>& is_open, Regions& regions) {
+  const std::vector<int> before = regions.of_cell;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (before[i] >= 0 || !is_open[i]) continue;
+    float least = static_cast<float>(kStep);
+    for_each_neighbour(map, i, [&](std::size_t j) {
+      const float step = std::abs(map.top[i] - map.top[j]);
+      if (before[j] >= 0 && step < least) least = step, regions.of_cell[i] = before[j];
+    });
+    if (regions.of_cell[i] >= 0) ++regions.cells[static_cast<std::size_t>(regions.of_cell[i])];
+  }
+}
+
+/// Cells along which two regions meet; with −1 all that is in none.
+using Rims = std::vector<std::map<int, int>>;
+
+Rims rims_of(const HeightMap& map, const Regions& regions) {
+  Rims rims(regions.cells.size());
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (const int own = regions.of_cell[i]; own >= 0)
+      for_each_neighbour(map, i, [&](std::size_t j) {
+        if (regions.of_cell[j] != own) ++rims[static_cast<std::size_t>(own)][regions.of_cell[j]];
+      });
+  return rims;
+}
+
+/// Small regions, and those that another one mostly surrounds, join the one that they touch most,
+/// until none does.
+void join_small(const HeightMap& map, Regions& regions) {
+  for (int round = 0; round < kRounds; ++round) {
+    const Rims rims = rims_of(map, regions);
+    UnionFind sets(rims.size());
+    bool has_changed = false;
+    for (std::size_t r = 0; r < rims.size(); ++r) {
+      int all = 0, most = 0, to = -1;
+      for (const auto& [other, count] : rims[r]) {
+        all += count;
+        if (other >= 0 && count > most) most = count, to = other;
+      }
+      if (to < 0) continue;
+      const double area = regions.cells[r] * map.cell * map.cell;
+      const bool is_small = area < kLeastRoof && most > kTouching * all;
+      const bool is_held = most > kSurrounded * all &&
+                           regions.cells[r] < regions.cells[static_cast<std::size_t>(to)];
+      if (!is_small && !is_held) continue;
+      sets.unite(static_cast<int>(r), to);
+      has_changed = true;
+    }
+    if (!has_changed) return;
+    std::map<int, int> number;
+    std::vector<double> cells;
+    for (int& r : regions.of_cell) {
+      if (r < 0) continue;
+      const auto [at, is_new] = number.try_emplace(sets.find(r), static_cast<int>(cells.size()));
+      if (is_new) cells.push_back(0);
+      r = at->second;
+      ++cells[static_cast<std::size_t>(r)];
+    }
+    regions.cells = std::move(cells);
+  }
+}
+
+/// Per region the height over the ground that a share of its cells lies below.
+std::vector<float> heights_of(const HeightMap& map, const std::vector<float>& ground,
+                              const Regions& regions, double share) {
+  std::vector<std::vector<float>> all(regions.cells.size());
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (regions.of_cell[i] >= 0)
+      all[static_cast<std::size_t>(regions.of_cell[i])].push_back(map.top[i] - ground[i]);
+  std::vector<float> out;
+  for (std::vector<float>& h : all) {
+    const auto at = h.begin() + static_cast<long>(share * static_cast<double>(h.size() - 1));
+    std::nth_element(h.begin(), at, h.end());
+    out.push_back(*at);
+  }
+  return out;
+}
+
+/// Cells whose whole square window is in, and then all that such a window covers.
+std::vector<char> opened(const HeightMap& map, const std::vector<char>& is_in, int radius) {
+  const auto pass = [&](const std::vector<char>& from, bool is_shrinking) {
+    std::vector<float> values(from.begin(), from.end());
+    const std::vector<float> mean = WindowMean(map, radius)(values);
+    std::vector<char> out(from.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = is_shrinking ? mean[i] > 0.999f : mean[i] > 0.001f;
+    return out;
+  };
+  return pass(pass(is_in, true), false);
+}
+
+}  // namespace
+
+SceneClasses classify(const HeightMap& map) {
+  SceneClasses out;
+  out.ground = find_terrain(map);
+  const std::vector<float> plant = plantness(map, out.ground);
+  std::vector<char> is_open(map.size(), 0), is_roof = is_open;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    is_open[i] = map.top[i] - out.ground[i] > kLow && plant[i] < kRoof;
+    is_roof[i] = is_open[i] && !is_on_wall(map, i);
+  }
+  is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
+  Regions regions = regions_of(map, is_roof, kStep);
+  take_rims(map, is_open, regions);
+  join_small(map, regions);
+  const std::vector<float> heights = heights_of(map, out.ground, regions, kHeightShare);
+  std::vector<int> number(regions.cells.size(), -1);
+  for (std::size_t r = 0; r < number.size(); ++r)
+    if (regions.cells[r] * map.cell * map.cell > kLeastBuilding && heights[r] > kLeastHeight)
+      number[r] = out.buildings++;
+  out.of_cell.assign(map.size(), SceneClass::kNothing);
+  out.building.assign(map.size(), -1);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (std::isnan(map.top[i])) continue;
+    const int r = regions.of_cell[i];
+    if (r >= 0) out.building[i] = number[static_cast<std::size_t>(r)];
+    out.of_cell[i] = out.building[i] >= 0                   ? SceneClass::kBuilding
+                     : !(map.top[i] - out.ground[i] > kLow) ? SceneClass::kGround
+                     : plant[i] >= kRoof                    ? SceneClass::kPlant
+                                                            : SceneClass::kRest;
+  }
+  return out;
+}
+
+}  // namespace colod

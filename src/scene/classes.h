@@ -1,0 +1,30 @@
+// A height map → ground, buildings, plants and the rest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "place/footprints.h"
+#include "survey.h"
+
+namespace colod {
+
+enum class SceneClass : std::uint8_t { kNothing, kGround, kBuilding, kPlant, kRest };
+
+struct SceneClasses {
+  std::vector<SceneClass> of_cell;  ///< as long as the map
+  std::vector<int> building;        ///< per cell: its number; −1: none
+  std::vector<float> ground;        ///< per cell: metres, also where something stands
+  int buildings = 0;
+};
+
+/// By height over the ground, by how well the surface fits a plane about each cell, and by how
+/// green it is where there are colours. Blocks are parted where roofs lie at different heights.
+/// O(cells · log cells). Deterministic.
+SceneClasses classify(const HeightMap& map);
+
+/// The plan of each building: its cells' border, straightened along the building's own directions.
+/// Attributes: height over the ground and area.
+std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasses& classes);
+
+}  // namespace colod

@@ -1,0 +1,29 @@
+// The tiles of a scene → heights and colours on a grid, as seen from straight above.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry.h"
+#include "tiles.h"
+
+namespace colod {
+
+/// Row by row from the least y; NaN heights where nothing is.
+struct HeightMap {
+  Vec2 origin = Vec2::Zero();  ///< the corner of the first cell
+  double cell = 0;             ///< metres
+  int width = 0, height = 0;   ///< cells
+  std::vector<float> top;      ///< metres, of the highest surface at the cell's middle
+  std::vector<Rgb> color;      ///< of that surface; empty: nothing has a colour
+
+  std::size_t size() const { return top.size(); }
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
+  Vec2 middle(int x, int y) const { return origin + cell * Vec2(x + 0.5, y + 0.5); }
+};
+
+/// Reads every tile once, in parallel. Cells are larger where the scene is so large that its map
+/// would take more than 64 million of them: 16 bytes a cell. `image_memory`: bytes that decoded
+/// images may take.
+HeightMap survey(const SceneTiles& tiles, std::size_t image_memory);
+
+}  // namespace colod
