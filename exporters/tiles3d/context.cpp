@@ -19,9 +19,18 @@ constexpr double kRise = 1.01;        // a parent's error is at least this times
 constexpr double kLeastError = 1e-3;  // metres; of a tile that has children
 constexpr int kUntextured = -1;
 
+/// The axis, with its sign, that a normal is nearest to.
+Vec3 side_of(const Vec3& normal) {
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  Vec3 side = Vec3::Zero();
+  side[axis] = normal[axis] >= 0 ? 1 : -1;
+  return side;
+}
+
 /// The faces of one image, each corner once for each place in it; glTF axes, rounded to the grid.
 FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& rounded) {
-  using Key = std::tuple<int, float, float, Rgb, bool>;
+  using Key = std::tuple<int, float, float, Rgb, double, double, double>;
   FlatMesh out;
   std::map<Key, int> numbers;
   for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f) {
@@ -30,16 +39,16 @@ FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& ro
     const auto at = [&](std::size_t c) { return rounded[static_cast<std::size_t>(face[c])]; };
     if (at(0) == at(1) || at(1) == at(2) || at(2) == at(0)) continue;
     // Unlit: of normals nothing but the side is ever asked for.
-    const bool is_up = from_gltf((at(1) - at(0)).cross(at(2) - at(0))).z() >= 0;
+    const Vec3 side = side_of((at(1) - at(0)).cross(at(2) - at(0)));
     Face flat;
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec2f uv = image >= 0 ? mesh.uvs[f][c] : Vec2f(0, 0);
       const Rgb rgb = image >= 0 ? Rgb{} : mesh.face_color[f];
-      const auto [known, is_new] = numbers.try_emplace(Key(face[c], uv.x(), uv.y(), rgb, is_up),
-                                                       static_cast<int>(out.positions.size()));
+      const Key key(face[c], uv.x(), uv.y(), rgb, side.x(), side.y(), side.z());
+      const auto [known, is_new] = numbers.try_emplace(key, static_cast<int>(out.positions.size()));
       if (is_new) {
         out.positions.push_back(at(c));
-        out.normals.push_back(to_gltf(Vec3(0, 0, is_up ? 1 : -1)));
+        out.normals.push_back(side);
         out.feature_ids.push_back(0);
         if (image >= 0) out.uvs.push_back(uv);
         if (image < 0) out.colors.push_back(rgb);
