@@ -117,9 +117,9 @@ Georeference from_odm(const fs::path& path) {
   std::string line;
   std::getline(in, line);
   line = trimmed(line).substr(0, kLongestQuote);  // the expression below recurses on its length
-  static const std::regex kUtm("WGS84 UTM (\\d{1,2})([NS])");
+  static const std::regex utm("WGS84 UTM (\\d{1,2})([NS])");
   std::smatch match;
-  if (!std::regex_match(line, match, kUtm)) refuse(path, "not 'WGS84 UTM <zone>N|S': " + line);
+  if (!std::regex_match(line, match, utm)) refuse(path, "not 'WGS84 UTM <zone>N|S': " + line);
   const int zone = std::stoi(match[1]);
   Vec3 offset = Vec3::Zero();
   if (zone < 1 || zone > 60 || !(in >> offset.x() >> offset.y()))
