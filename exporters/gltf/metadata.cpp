@@ -59,7 +59,8 @@ std::vector<std::pair<std::string, std::string>> attribute_columns(
            std::any_of(out.begin(), out.end(), [&](const auto& c) { return c.first == id; });
   };
   for (const Feature& f : features)
-    for (const auto& [name, value] : f.attributes) {
+    for (const auto& attribute : f.attributes) {
+      const std::string& name = attribute.first;
       if (std::any_of(out.begin(), out.end(), [&](const auto& c) { return c.second == name; }))
         continue;
       std::string id = column_id(name);
