@@ -1,12 +1,20 @@
-// A place for files of one test.
+// A place for files of one test, and what is in them.
 #pragma once
 
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 namespace colod::test {
+
+/// All bytes of a file; none where there is no such file.
+inline std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 /// A new folder of its own that goes away with the test.
 class TemporaryFolder {

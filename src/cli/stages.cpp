@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -62,6 +63,18 @@ void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cel
                   " --shard " + std::to_string(cell) + "/" + std::to_string(plan.cells.size()));
 }
 
+/// Calls body(cell, its scene file) for the cells of this run's shard; no other run is at work on a
+/// cell meanwhile.
+void for_own_cells(const PlanArguments& a, const Plan& plan,
+                   const std::function<void(std::size_t, const std::string&)>& body) {
+  const std::size_t cells = plan.cells.size();
+  for (const std::size_t cell : cells_of(shard_of(a.shard, cells), cells)) {
+    const std::string path = cell_scene(a.path, cell);
+    const CellLock lock(path);
+    body(cell, path);
+  }
+}
+
 /// Does what of the inventory is not yet in the scene file; what went wrong is added to `problems`.
 void segment_into(Store& store, const Inventory& inventory, const Reader& read,
                   const Options& pipeline, const Log& log, Scene& problems) {
@@ -95,16 +108,13 @@ void segment_into(Store& store, const Inventory& inventory, const Reader& read,
 void segment_cells(const StageArguments& a, const Log& log, Scene& problems) {
   const Plan plan = read_plan(a.plan.path);
   check_cost(plan.options, plan.building_count());
-  for (const std::size_t cell :
-       cells_of(shard_of(a.plan.shard, plan.cells.size()), plan.cells.size())) {
+  for_own_cells(a.plan, plan, [&](std::size_t cell, const std::string& path) {
     const Inventory inventory = inventory_of(plan, cell);
-    const std::string path = cell_scene(a.plan.path, cell);
-    const CellLock lock(path);
     Store store(path, true);
     store.keep_only(names_of(inventory));
     const Reader read = [&](std::size_t f) { return read_file(inventory.files[f], plan.read); };
     segment_into(store, inventory, read, plan.options, log, problems);
-  }
+  });
 }
 
 int segment(const StageArguments& a) {
@@ -254,14 +264,11 @@ int mesh(const StageArguments& a) {
     for (Store& store : open_all(a.inputs)) mesh_scene(store, log, problems);
   } else {
     const Plan plan = read_plan(a.plan.path);
-    const std::size_t cells = plan.cells.size();
-    for (const std::size_t cell : cells_of(shard_of(a.plan.shard, cells), cells)) {
-      const std::string path = cell_scene(a.plan.path, cell);
-      const CellLock lock(path);
+    for_own_cells(a.plan, plan, [&](std::size_t cell, const std::string& path) {
       check_whole(plan, a.plan.path, cell);
       Store store(path, false);
       mesh_scene(store, log, problems);
-    }
+    });
   }
   log_problems(problems, log);
   return exit_code(problems);

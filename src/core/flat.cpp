@@ -10,6 +10,13 @@
 
 namespace colod {
 
+double signed_area(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    twice += cross(ring[i], ring[(i + 1) % ring.size()]);
+  return twice / 2;
+}
+
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();

@@ -11,6 +11,9 @@ namespace colod {
 /// z of the cross product: twice the area of the triangle, positive when b is to the left of a.
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+/// Of a closed ring: positive when it runs counter-clockwise.
+double signed_area(const std::vector<Vec2>& ring);
+
 /// The corners of the convex hull, counter-clockwise, without points on its sides. Fewer than three
 /// different points, or all on one line: fewer than three corners. O(n log n), Andrew's monotone
 /// chain.

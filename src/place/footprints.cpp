@@ -13,6 +13,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/flat.h"
 #include "local.h"
 
 namespace colod {
@@ -79,15 +80,6 @@ class Mover {
   std::optional<LocalPlace> local_;
 };
 
-double area_of(const Ring& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return twice / 2;
-}
-
 /// Counter-clockwise when `is_outer`, else clockwise; without points that stand for nothing.
 Ring ring_of(const OGRLinearRing& from, bool is_outer, const Mover& mover, bool& is_good) {
   Ring ring;
@@ -97,7 +89,7 @@ Ring ring_of(const OGRLinearRing& from, bool is_outer, const Mover& mover, bool&
     if (ring.empty() || ring.back() != p) ring.push_back(p);
   }
   while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  if ((area_of(ring) > 0) != is_outer) std::reverse(ring.begin(), ring.end());
+  if ((signed_area(ring) > 0) != is_outer) std::reverse(ring.begin(), ring.end());
   return ring;
 }
 
@@ -176,7 +168,7 @@ class Taker {
     if (!is_good) return leave_out(footprint, "lies outside of what its reference system is for");
     double area = 0;
     for (const auto& part : footprint.parts)
-      for (const Ring& ring : part) area += area_of(ring);
+      for (const Ring& ring : part) area += signed_area(ring);
     if (area < kLeastArea)
       return leave_out(footprint, "covers " + std::to_string(area) + " m², less than a building");
     out_.all.push_back(std::move(footprint));

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "classes.h"
+#include "core/flat.h"
 #include "parameters.h"
 
 namespace colod {
@@ -18,15 +19,6 @@ namespace {
 
 using namespace parameters::outlines;
 using Ring = std::vector<Vec2>;
-
-double area_of(const Ring& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return twice / 2;
-}
 
 using Corner = std::array<int, 2>;
 
@@ -183,7 +175,7 @@ Ring straightened(const HeightMap& map, const std::vector<Corner>& corners, doub
   if (std::isnan(direction)) direction = main_direction(ring);
   const Ring square = squared(ring, direction);
   const bool is_alike =
-      std::abs(area_of(square) - area_of(ring)) < kAreaChange * std::abs(area_of(ring));
+      std::abs(signed_area(square) - signed_area(ring)) < kAreaChange * std::abs(signed_area(ring));
   return is_alike ? square : ring;
 }
 
@@ -210,7 +202,7 @@ std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasse
     std::vector<Ring> outer, holes;
     for (const std::vector<Corner>& corners : rings_of(borders[b])) {
       Ring ring = straightened(map, corners, direction);
-      const double own = ring.empty() ? 0 : area_of(ring);
+      const double own = ring.empty() ? 0 : signed_area(ring);
       if (own > kLeastPart)
         outer.push_back(std::move(ring));
       else if (own < -kLeastHole)
@@ -221,7 +213,7 @@ std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasse
     }
     if (outer.empty()) continue;
     std::stable_sort(outer.begin(), outer.end(),
-                     [](const Ring& u, const Ring& v) { return area_of(u) > area_of(v); });
+                     [](const Ring& u, const Ring& v) { return signed_area(u) > signed_area(v); });
     for (Ring& ring : outer) footprint.parts.push_back({std::move(ring)});
     for (Ring& hole : holes) footprint.parts[0].push_back(std::move(hole));
     footprint.id = "building-" + std::to_string(out.size() + 1);

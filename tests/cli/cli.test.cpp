@@ -13,6 +13,7 @@
 #include "temporary_folder.h"
 
 using namespace colod;
+using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
@@ -21,11 +22,6 @@ struct Result {
   int exit_code;
   std::string out, err;
 };
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// With colod run in it.
 class Folder : public test::TemporaryFolder {

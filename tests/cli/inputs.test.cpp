@@ -13,6 +13,7 @@
 
 using namespace colod;
 using Catch::Contains;
+using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
@@ -21,11 +22,6 @@ struct Result {
   int exit_code;
   std::string err;
 };
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// With `colod build in -o out` run in it.
 class Folder : public test::TemporaryFolder {

@@ -13,14 +13,10 @@
 
 using namespace colod;
 using Catch::Contains;
+using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class Folder : public test::TemporaryFolder {
  public:

@@ -2,13 +2,14 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "place/place.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 using namespace colod;
+using test::slurp;
 using namespace colod::test;
 using Catch::Contains;
 using Json = nlohmann::json;
@@ -19,11 +20,6 @@ struct Run {
   int code;
   std::string log;
 };
-
-std::string slurp(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// With few voxels: what a scene is taken apart into does not hang on them.
 Run build(const TempFolder& folder, const std::string& rest) {

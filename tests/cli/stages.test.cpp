@@ -16,6 +16,7 @@
 #include "temporary_folder.h"
 
 using namespace colod;
+using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
@@ -23,11 +24,6 @@ namespace {
 struct Folder : test::TemporaryFolder {
   std::string operator/(const std::string& name) const { return (path() / name).string(); }
 };
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 int count_of(const std::string& text, const std::string& word) {
   int n = 0;

@@ -15,15 +15,11 @@
 
 using namespace colod;
 using Catch::Contains;
+using test::slurp;
 namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class Folder : public test::TemporaryFolder {
  public:

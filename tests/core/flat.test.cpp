@@ -17,6 +17,14 @@ TEST_CASE("the hull has the corners alone, counter-clockwise, however often poin
   CHECK(convex_hull({{0, 0}, {1, 1}, {2, 2}}).size() < 3);
 }
 
+TEST_CASE("the area of a ring tells which way it runs") {
+  const std::vector<Vec2> ell{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {0, 3}};
+  CHECK(signed_area(ell) == Approx(6));
+  CHECK(signed_area({ell.rbegin(), ell.rend()}) == Approx(-6));
+  CHECK(signed_area({{0, 0}, {2, 2}}) == 0);
+  CHECK(signed_area({}) == 0);
+}
+
 TEST_CASE("an outline covers its inside and its border, not its hole and not beyond") {
   Outline frame;  // a square of 4 m with a hole of 2 m, the hole's ring last
   frame.vertices = {{0, 0, 1}, {4, 0, 1}, {4, 4, 1}, {0, 4, 1},

@@ -4,24 +4,19 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 
 #include "core/error.h"
+#include "temporary_folder.h"
 
 using namespace colod;
+using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
 
 const fs::path kRoot = COLOD_SOURCE_DIR;
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// The C++ text with literals that are only broken for length joined.
 std::string with_whole_literals(const std::string& text) {
