@@ -6,7 +6,7 @@
 
 namespace colod {
 
-/// A scene file holds the numbers of the first seven. What makes the building much taller is a
+/// A scene file holds the numbers of the first eight. What makes the building much taller is a
 /// spire; what no detector tells (elements/elements.h) only a ground truth names.
 enum class ElementKind {
   kPlain = 0,    ///< none: of the body

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "parameters.h"
@@ -157,3 +158,30 @@ std::vector<Element> find_chimney_corners(const std::vector<Panel>& panels) {
 }
 
 }  // namespace colod::elements
+
+namespace colod {
+
+bool is_whole_chimney(const Planes& planes, const std::vector<int>& which) {
+  using namespace elements;
+  const std::vector<Panel> panels = panels_of(planes, which);
+  std::map<int, double> paired;  // area of walls that have an opposite one
+  std::vector<Vec3> ways;
+  double area = 0;
+  for (const Panel& p : panels) {
+    area += p.plane->area;
+    if (p.box.min.z() < planes.box.min.z() + kLeastFoot) return false;
+  }
+  for (const auto& [a, b] : near_pairs(walls_up_to(panels, kMostCheek), kMostChimney)) {
+    if (!pair_of(*a, *b)) continue;
+    paired[a->id] = a->plane->area, paired[b->id] = b->plane->area;
+    ways.push_back(a->out);
+  }
+  const bool is_around = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
+    return std::abs(way.dot(ways.front())) < kAcross;
+  });
+  double walls = 0;
+  for (const auto& [id, its] : paired) walls += its;
+  return is_around && walls >= kLeastWalls * area;
+}
+
+}  // namespace colod

@@ -48,4 +48,9 @@ struct Element {
 std::vector<Element> find_elements(const Planes& planes, const std::vector<int>& among,
                                    const RuleSet& rules = RuleSet::all());
 
+/// These planes (indices) are those of a chimney that is seen from all sides: most of their area
+/// are walls that look away from each other, in two directions, and they begin above the building's
+/// foot. find_elements leaves such chimneys out: nothing of them is missing.
+bool is_whole_chimney(const Planes& planes, const std::vector<int>& which);
+
 }  // namespace colod

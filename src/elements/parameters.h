@@ -23,6 +23,9 @@ namespace colod::parameters::elements::chimneys {
 
 constexpr double kLeastChimney = 0.25;  // metres between a chimney's walls
 constexpr double kMostCorner = 1.3;     // metres of a chimney of which only a corner is seen
+constexpr double kLeastFoot = 1;        // metres above the building's foot: lower ones are pillars
+constexpr double kAcross = 0.4;         // |cosine| of its two pairs of walls at most
+constexpr double kLeastWalls = 0.6;     // of its area: walls with an opposite one
 
 }  // namespace colod::parameters::elements::chimneys
 

@@ -3,7 +3,8 @@
 //   loggia's ceiling and cheeks to the body or to several small segments. The planes of a balcony,
 //   a loggia or a recess become one segment: the one that has most of them and little else, or a
 //   new one. A chimney of which a scan shows a corner only may share a detail's segment with
-//   something larger; its planes then become a segment, too.
+//   something larger; its planes then become a segment, too. Whole chimneys are parted by rays:
+//   they get their name, so that small and large ones are one kind.
 // Notation: –
 #include "ownership.h"
 
@@ -99,6 +100,19 @@ void part_chimney(const Planes& planes, const HitGrid& grid, const Element& chim
   draft.segments.push_back(std::move(own));
 }
 
+/// Most of the segment's area is one chimney's.
+bool is_chimney(const Planes& planes, const Segment& segment,
+                const std::vector<Element>& elements) {
+  const double area = area_of(planes, segment.planes);
+  return is_whole_chimney(planes, segment.planes) ||
+         std::any_of(elements.begin(), elements.end(), [&](const Element& e) {
+           const bool is_its = std::includes(segment.planes.begin(), segment.planes.end(),
+                                             e.planes.begin(), e.planes.end());
+           return e.kind == ElementKind::kChimney && is_its &&
+                  area <= (1 + kMostOthers) * area_of(planes, e.planes);
+         });
+}
+
 }  // namespace
 
 void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
@@ -146,6 +160,10 @@ void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOp
     if (options.rules.has(Rule::kChimneySegments) && element.kind == ElementKind::kChimney)
       part_chimney(planes, grid, element, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
+  if (!has_forms || !options.rules.has(Rule::kChimneys)) return;
+  for (Segment& s : draft.segments)
+    if (s.kind == ElementKind::kPlain && is_chimney(planes, s, elements))
+      s.kind = ElementKind::kChimney;
 }
 
 }  // namespace colod

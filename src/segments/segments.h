@@ -22,7 +22,7 @@ struct SegmentOptions {
 struct Segment {
   std::vector<int> planes;  ///< rising, each plane in at most one segment, at least one
   bool is_alcove = false;   ///< a recess: its voxels lie outside the building
-  /// Of an element (elements/elements.h); chimneys stay plain: rays part them from the body.
+  /// Of an element (elements/elements.h). Rays part chimneys from the body; they are only named.
   ElementKind kind = ElementKind::kPlain;
   std::int64_t voxels = 0;
   double volume = 0;  ///< m³, voxels × voxel volume

@@ -34,8 +34,9 @@ namespace {
 using Json = nlohmann::json;
 
 ElementKind kind_of(std::int64_t stored) {
-  for (const ElementKind kind : {ElementKind::kBalcony, ElementKind::kLoggia, ElementKind::kDormer,
-                                 ElementKind::kBay, ElementKind::kSpire, ElementKind::kWindow})
+  for (const ElementKind kind :
+       {ElementKind::kBalcony, ElementKind::kLoggia, ElementKind::kDormer, ElementKind::kBay,
+        ElementKind::kSpire, ElementKind::kWindow, ElementKind::kChimney})
     if (stored == static_cast<int>(kind)) return kind;
   return ElementKind::kPlain;
 }

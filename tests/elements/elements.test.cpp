@@ -145,6 +145,53 @@ TEST_CASE("a chimney may lack one side; a bay or a dormer has a room behind its 
   for (const Element& h : elements_of(bay)) CHECK(h.kind == ElementKind::kBay);
 }
 
+/// Whether the planes above z are a chimney's.
+bool is_chimney_above(const Mesh& mesh, double z) {
+  const Planes planes = planes_of_mesh(mesh);
+  std::vector<int> above;
+  for (int p = 0; p < static_cast<int>(planes.planes.size()); ++p)
+    if (planes.planes[p].centroid.z() > z) above.push_back(p);
+  REQUIRE_FALSE(above.empty());
+  return is_whole_chimney(planes, above);
+}
+
+TEST_CASE("a whole chimney is told by walls on all sides, whatever its size") {
+  for (const double size : {0.6, 0.9, 1.6, 2.2}) {
+    CAPTURE(size);
+    const Vec3 high(2 + size, 2 + 0.8 * size, 7 + std::max(1.0, 1.2 * size));
+    CHECK(is_chimney_above(join(plain_house(), box_mesh({2, 2, 7}, high)), 7.1));
+    CHECK(is_chimney_above(
+        without(join(plain_house(), box_mesh({2, 2, 7}, high)), {2, 2, high.z()}, high), 7.1));
+  }
+}
+
+TEST_CASE("a storey, a dormer, a pillar and a low step are no chimney") {
+  CHECK_FALSE(is_chimney_above(join(plain_house(), box_mesh({2, 2, 7}, {6, 5, 10})), 7.1));
+  CHECK_FALSE(is_chimney_above(join(plain_house(), box_mesh({2, 2, 7}, {4, 4, 7.3})), 7.1));
+  CHECK_FALSE(is_chimney_above(dormer_house(), 4.2));
+  const Planes pillar = planes_of_mesh(join(plain_house(), box_mesh({2, -4, 0}, {2.6, -3.4, 3})));
+  std::vector<int> its;
+  for (int p = 0; p < static_cast<int>(pillar.planes.size()); ++p)
+    if (pillar.planes[p].centroid.y() < -1) its.push_back(p);
+  REQUIRE(its.size() >= 5);
+  CHECK_FALSE(is_whole_chimney(pillar, its));
+}
+
+TEST_CASE("segments that are chimneys are named, whole ones and such as a scan shows in part") {
+  const Mesh whole = join(plain_house(), box_mesh({2, 2, 7}, {3, 2.6, 8.5}));
+  for (const Mesh& house : {whole, without(whole, {3, 2, 7}, {3, 2.6, 8.5}), chimney_house()}) {
+    const Planes planes = planes_of_mesh(house);
+    const Segments s = build_segments(planes, {.visibility = {.ns = 48, .nr = 32}});
+    const auto named = std::find_if(s.segments.begin(), s.segments.end(), [](const Segment& g) {
+      return g.kind == ElementKind::kChimney;
+    });
+    REQUIRE(named != s.segments.end());
+    for (const int p : named->planes) CHECK(planes.planes[p].centroid.z() > 6.9);
+    CHECK(std::count_if(s.segments.begin(), s.segments.end(),
+                        [](const Segment& g) { return g.kind == ElementKind::kChimney; }) == 1);
+  }
+}
+
 TEST_CASE("a window is found by its pane and reveals, two of them at least") {
   const auto found = elements_of(window_house());
   REQUIRE(found.size() == 1);
