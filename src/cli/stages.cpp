@@ -197,13 +197,17 @@ void check_exportable(const Scene& scene) {
   }
 }
 
-/// The scene files that are named, or all cells of the plan, each with all that it is to hold.
-std::vector<std::string> scene_files(const StageArguments& a) {
+using Locks = std::vector<std::unique_ptr<CellLock>>;
+
+/// The scene files that are named, or all cells of the plan, each with all that it is to hold. With
+/// `locks` no other run is at work on a cell from before it is looked at.
+std::vector<std::string> scene_files(const StageArguments& a, Locks* locks = nullptr) {
   if (a.plan.path.empty()) return a.inputs;
   const Plan plan = read_plan(a.plan.path);
   std::vector<std::string> files;
   for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
     files.push_back(cell_scene(a.plan.path, cell));
+    if (locks) locks->push_back(std::make_unique<CellLock>(files.back()));
     check_whole(plan, a.plan.path, cell);
   }
   return files;
@@ -211,10 +215,8 @@ std::vector<std::string> scene_files(const StageArguments& a) {
 
 int analyze(const StageArguments& a) {
   limit_threads(a.run.threads);
-  const std::vector<std::string> files = scene_files(a);
-  std::vector<std::unique_ptr<CellLock>> locks;
-  if (!a.plan.path.empty())
-    for (const std::string& file : files) locks.push_back(std::make_unique<CellLock>(file));
+  Locks locks;
+  const std::vector<std::string> files = scene_files(a, &locks);
   std::vector<Store> stores = open_all(files);
   check_same_rules(stores, files);
   std::vector<std::size_t> file_of;

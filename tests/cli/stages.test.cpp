@@ -11,6 +11,8 @@
 #include <thread>
 
 #include "meshes.h"
+#include "plan/cell_lock.h"
+#include "plan/plan.h"
 #include "read/read.h"
 #include "store/store.h"
 #include "temporary_folder.h"
@@ -156,6 +158,11 @@ TEST_CASE("a plan's cells want all their buildings, and say which run brings the
   REQUIRE(run({"segment", "--plan", plan, "--shard", "0/2"}, log));
   CHECK_FALSE(run({"analyze", "--plan", plan}, log));
   CHECK(count_of(slurp(log), "--shard 1/3") == 1);
+  {  // what another run is filling is not looked at, whole or not
+    const CellLock other(cell_scene(plan, 1));
+    CHECK_FALSE(run({"analyze", "--plan", plan}, log));
+    CHECK(count_of(slurp(log), "another run is at work") == 1);
+  }
   REQUIRE(run({"segment", "--plan", plan, "--shard", "1/2"}, log));
   REQUIRE(run({"analyze", "--plan", plan}, log));
   REQUIRE(run({"mesh", "--plan", plan}, log));
