@@ -127,7 +127,7 @@ struct Building {
   std::string source;      ///< path of the file it came from; empty: from memory
   Point origin{};          ///< of its meshes, in the input's coordinates
   std::string failure;     ///< why it has no layer at all; empty: it has
-  bool has_lost = false;   ///< a body of it is gone, or a layer is another's: messages() says which
+  bool has_lost = false;   ///< a body, layer or texture of it is gone: messages() says which
   std::vector<Layer> layers;  ///< coarsest first
 };
 

@@ -332,7 +332,9 @@ Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache
     : impl_(std::make_unique<Impl>(source, look, cache)) {}
 Baker::~Baker() = default;
 
+bool Baker::has_detail() const { return impl_->sampler.has_detail(); }
 const std::vector<std::string>& Baker::warnings() const { return impl_->sampler.warnings(); }
+const std::vector<std::string>& Baker::losses() const { return impl_->sampler.losses(); }
 double Baker::source_texel() const { return impl_->sampler.texel(); }
 
 BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) const {

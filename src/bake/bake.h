@@ -58,8 +58,11 @@ class Baker {
   /// One colour a facet: the mean of what is seen of it.
   std::vector<Rgb> facet_colors(const PolygonMesh& mesh, double reach) const;
 
-  /// One line for each image with a fault, naming its file.
+  /// Whether places of the source look unlike: it has an image that can be read, or colours.
+  bool has_detail() const;
+  /// What LookSampler says of images.
   const std::vector<std::string>& warnings() const;
+  const std::vector<std::string>& losses() const;
   /// Metres, of the source's own texels.
   double source_texel() const;
 

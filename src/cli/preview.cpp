@@ -30,8 +30,9 @@ Image render(const Source& source, const PreviewArguments& a, const PreviewOptio
   if (a.is_plain || !source.look.has_detail()) return render_preview(source.mesh, options);
   const ImageCache images(static_cast<std::size_t>(a.memory * (1 << 20)));
   const LookSampler look(source.mesh, source.look, images);
-  for (const std::string& w : look.warnings())
-    Log(false, false).message({Level::kWarning, source.name + ": " + w});
+  for (const std::vector<std::string>* lines : {&look.losses(), &look.warnings()})
+    for (const std::string& line : *lines)
+      Log(false, false).message({Level::kWarning, source.name + ": " + line});
   return render_preview(source.mesh, look, options);
 }
 

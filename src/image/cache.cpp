@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -14,6 +15,8 @@ namespace colod {
 namespace {
 
 using Key = std::tuple<std::string, std::size_t, std::size_t, std::size_t, std::size_t>;
+
+constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
 int digit_of(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -42,7 +45,12 @@ std::string decode_base64(const std::string& text) {
 
 }  // namespace
 
+ImagePlace missing_image(const std::string& name) { return {.path = name, .offset = kNowhere}; }
+
+bool is_missing(const ImagePlace& place) { return place.offset == kNowhere; }
+
 std::string read_image(const ImagePlace& place, std::size_t most_bytes) {
+  if (is_missing(place)) throw std::runtime_error("is missing");
   std::ifstream in(place.path, std::ios::binary | std::ios::ate);
   if (!in) throw std::runtime_error("is missing or cannot be opened");
   const auto size = static_cast<std::size_t>(in.tellg());
@@ -178,10 +186,12 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
     DecodedImage decoded = decode_image(read_image(place, impl_->budget), impl_->budget);
     slot->size = {decoded.raster.width, decoded.raster.height};
     slot->entry.problem = decoded.remark;
+    slot->entry.is_lost = decoded.is_damaged;
     slot->entry.pyramid = build(std::move(decoded.raster));
     impl_->admit(*slot, bytes_of(*slot->entry.pyramid));
   } catch (const std::exception& e) {
     slot->entry.problem = e.what();
+    slot->entry.is_lost = true;
   }
   return slot->entry;
 }
@@ -191,12 +201,14 @@ void ImageCache::put(const ImagePlace& place, Raster raster) {
   const std::lock_guard lock(slot->mutex);
   slot->is_known = true;
   slot->size = {raster.width, raster.height};
-  slot->entry = {build(std::move(raster)), ""};
+  slot->entry = {build(std::move(raster)), "", false};
 }
 
 ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   const std::shared_ptr<Slot> slot = impl_->slot(place);
-  const auto known = [&] { return Facts{slot->size[0], slot->size[1], slot->entry.problem}; };
+  const auto known = [&] { 
+    return Facts{slot->size[0], slot->size[1], slot->entry.problem, slot->entry.is_lost};
+  };
   {
     const std::lock_guard lock(slot->mutex);
     if (slot->is_known) return known();

@@ -35,6 +35,7 @@ const char* extension_of(ImageFormat format);
 struct DecodedImage {
   Raster raster;
   std::string remark;  ///< what is wrong with it though it could be read; empty: nothing
+  bool is_damaged = false;  ///< a part of it could not be read: that is what the remark says
 };
 
 /// JPEG (also progressive, grey, CMYK), PNG (of any kind; transparency is left out) or WebP. Throws

@@ -67,44 +67,60 @@ const Pyramid* Lens::look(const ImagePlace& place, int number) {
 
 LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
     : mesh_(mesh), look_(look), cache_(cache), texel_of_face_(mesh.faces.size(), 0) {
-  std::vector<std::array<int, 2>> sizes;
-  std::vector<std::string> problems;
-  for (const ImagePlace& place : look.images) {
-    const ImageCache::Facts facts = cache.facts(place);
-    sizes.push_back({facts.width, facts.height});
-    problems.push_back(facts.problem);
-  }
-  std::vector<int> lost(look.images.size(), 0);
-  measure_texels(sizes, lost);
+  std::vector<ImageCache::Facts> facts;
+  for (const ImagePlace& place : look.images) facts.push_back(cache.facts(place));
+  measure_texels(facts);
+  has_detail_ = !look.colors.empty() ||
+                std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
+  const std::vector<Wear> wear = find_wear();
   for (std::size_t i = 0; i < look.images.size(); ++i) {
+    if (wear[i].faces == 0) continue;
     const std::string named =
         "texture '" + std::filesystem::path(look.images[i].path).filename().string() + "' ";
-    if (!problems[i].empty())
-      warnings_.push_back(named + problems[i] +
-                          (sizes[i][0] == 0 ? ": its material's colour stands for it" : ""));
-    if (lost[i] > 0 && sizes[i][0] > 0)
-      warnings_.push_back(named + "is on " + std::to_string(lost[i]) +
+    const bool is_there = facts[i].width > 0;
+    if (facts[i].is_lost)
+      losses_.push_back(named + facts[i].problem +
+                        (is_there ? ": what could be read of it is shown"
+                                  : ": the colour of material '" + wear[i].material.substr(0, 80) +
+                                        "' stands for it") +
+                        "; --texture none builds without textures");
+    else if (!facts[i].problem.empty())
+      warnings_.push_back(named + facts[i].problem);
+    if (wear[i].without > 0 && is_there)
+      warnings_.push_back(named + "is on " + std::to_string(wear[i].without) +
                           " faces without texture coordinates: its mean colour stands for it");
   }
 }
 
-void LookSampler::measure_texels(const std::vector<std::array<int, 2>>& sizes,
-                                 std::vector<int>& lost) {
+bool LookSampler::has_place(std::size_t face) const {
+  return !look_.uvs.empty() && std::all_of(look_.uvs[face].begin(), look_.uvs[face].end(), is_place);
+}
+
+std::vector<LookSampler::Wear> LookSampler::find_wear() const {
+  std::vector<Wear> wear(look_.images.size());
+  for (std::size_t f = 0; f < look_.face_material.size(); ++f) {
+    if (look_.face_material[f] < 0) continue;
+    const Material& m = look_.materials[static_cast<std::size_t>(look_.face_material[f])];
+    if (m.image < 0) continue;
+    Wear& w = wear[static_cast<std::size_t>(m.image)];
+    if (w.faces++ == 0) w.material = m.name;
+    w.without += !has_place(f);
+  }
+  return wear;
+}
+
+void LookSampler::measure_texels(const std::vector<ImageCache::Facts>& facts) {
   double area = 0, texels = 0, plain_area = 0;
   for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
     const double own = face_area(mesh_, mesh_.faces[f]);
     plain_area += own;
     const int material = look_.face_material.empty() ? -1 : look_.face_material[f];
     const int image = material < 0 ? -1 : look_.materials[static_cast<std::size_t>(material)].image;
-    if (image < 0 || sizes[static_cast<std::size_t>(image)][0] == 0) continue;
-    if (look_.uvs.empty() || !std::all_of(look_.uvs[f].begin(), look_.uvs[f].end(), is_place)) {
-      ++lost[static_cast<std::size_t>(image)];
-      continue;
-    }
-    const auto& size = sizes[static_cast<std::size_t>(image)];
+    if (image < 0 || !has_place(f)) continue;
+    const ImageCache::Facts& size = facts[static_cast<std::size_t>(image)];
     const auto& uv = look_.uvs[f];
     const Eigen::Vector2d a = (uv[1] - uv[0]).cast<double>(), b = (uv[2] - uv[0]).cast<double>();
-    const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size[0] * size[1];
+    const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size.width * size.height;
     if (!(covered > 0) || !(own > 0)) continue;
     texel_of_face_[f] = static_cast<float>(std::sqrt(own / covered));
     area += own, texels += covered;

@@ -98,11 +98,12 @@ void dress(Building& b, const TextureOptions& options, const ImageCache& images,
   const Mesh mesh = turned_back(b);
   const Baker baker(mesh, b.source.look, images);
   for (const std::string& w : baker.warnings()) warn(b, w);
+  b.lost_looks = baker.losses();
   Allowance allowance;
   for (std::size_t i = out.levels.size(); i-- > 0;) {  // finest first
     ExportLevel& level = out.levels[i];
     level.look.facet_colors = baker.facet_colors(level.mesh, reach_of(b, level));
-    if (options.mode == Texture::kAuto) dress_level(b, baker, options, allowance, level);
+    if (options.mode == Texture::kAuto && baker.has_detail()) dress_level(b, baker, options, allowance, level);
   }
 }
 

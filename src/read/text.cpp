@@ -266,10 +266,24 @@ class ObjReader {
     corner_uv_.push_back(i < 0 ? static_cast<int>(uvs_.size()) + i : i - 1);
   }
 
+  /// What has texture coordinates, and a material that no file defines for want of a file, has lost
+  /// its image.
+  void lose_images() {
+    const int lost = uvs_.empty() ? -1 : library_.lost_image();
+    if (lost < 0) return;
+    for (int f = 0; f < raw_.face_count(); ++f) {
+      const int m = raw_.face_material[f];
+      if (m < 0 || library_.materials()[m].is_defined) continue;
+      for (int c = raw_.face_begin[f]; c < raw_.face_end(f); ++c)
+        if (corner_uv_[c] >= 0) raw_.materials[m].image = lost;
+    }
+  }
+
   /// Coordinates as materials place them, from the upper left.
   void add_look() {
-    raw_.images = library_.images();
     for (const MtlMaterial& m : library_.materials()) raw_.materials.push_back(m.material);
+    lose_images();
+    raw_.images = library_.images();
     raw_.warnings.insert(raw_.warnings.end(), library_.warnings().begin(),
                          library_.warnings().end());
     if (raw_.point_colors.size() != raw_.points.size()) raw_.point_colors.clear();

@@ -53,9 +53,9 @@ class Folder : public test::TemporaryFolder {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   /// All files that a build writes but its report.
-  Files built(const std::string& input, const std::string& options = "") const {
+  Files built(const std::string& input, const std::string& options = "", int ends = 0) const {
     fs::remove_all(path() / "out");
-    REQUIRE(run("build " + input + " -o out --ns 24 --nr 40 --no-report-html " + options) == 0);
+    REQUIRE(run("build " + input + " -o out --ns 24 --nr 40 --no-report-html " + options) == ends);
     return files("out");
   }
   Files files(const std::string& folder) const {
@@ -130,21 +130,81 @@ TEST_CASE("without textures, and in shape, a textured house is the same as a bar
     CHECK(points_of(dressed.at(name)) == points_of(bare.at(name)));
 }
 
-TEST_CASE("bad images cost themselves, with a warning that names file and building") {
+TEST_CASE("an image that cannot be shown is a loss, costs no shape, and may be done without") {
   const Folder folder;
   folder.write_house("bare", "");
   folder.write_house("in", kMtl);
   const Files bare = folder.built("bare", kAll);
-  folder.built("in", kAll);
-  CHECK_THAT(folder.err(), Contains("wall.png") && Contains("missing"));
   const std::string whole = checkers();
-  for (const std::string& bytes : {whole.substr(0, whole.size() / 2), std::string("nonsense")}) {
-    folder.write("in/wall.png", bytes);
-    const Files files = folder.built("in", kAll);
-    CHECK_THAT(folder.err(), Contains("house: texture 'wall.png'"));
+  const std::string jpeg = encode_image(Raster(256, 256), ImageFormat::kJpeg, 90);
+  const std::pair<std::string, std::string> kinds[] = {{"", "missing"},
+                                                       {whole.substr(0, whole.size() / 2), "damaged"},
+                                                       {jpeg.substr(0, jpeg.size() / 2), "damaged"},
+                                                       {"nonsense", "no JPEG, PNG or WebP"},
+                                                       {"\xABKTX 20\xBB\r\n\x1A\n", "KTX2"}};
+  for (const auto& [bytes, cause] : kinds) {
+    INFO(cause);
+    if (!bytes.empty()) folder.write("in/wall.png", bytes);
+    const Files files = folder.built("in", kAll, 1);
+    CHECK_THAT(folder.err(), Contains("house: texture 'wall.png' ") && Contains(cause) &&
+                                 Contains("--texture none") && Contains("something is lost"));
     CHECK(points_of(files.at("buildings/house.layer2.obj")) ==
           points_of(bare.at("buildings/house.layer2.obj")));
+    const nlohmann::json report = folder.report();
+    CHECK(report["buildings"][0]["lost"] == true);
+    REQUIRE(report["buildings"][0]["lost_textures"].size() == 1);
+    CHECK_THAT(report["buildings"][0]["lost_textures"][0].get<std::string>(), Contains(cause));
+    CHECK(report["buildings"][0]["heavy_warnings"] == 1);
+    CHECK(report["totals"]["lost_textures"] == 1);
+    CHECK(folder.built("in", std::string(kAll) + "--texture none") == bare);
+    CHECK_THAT(folder.err(), !Contains("wall.png"));
   }
+}
+
+TEST_CASE("the colour of a material stands for a missing image of its") {
+  const Folder folder;
+  folder.write_house("in", kMtl);  // Kd 0.9 0.3 0.2
+  const Files files = folder.built("in", "--format ply,glb", 1);
+  CHECK_THAT(folder.err(), Contains("the colour of material 'wall' stands for it"));
+  CHECK_THAT(files.at("buildings/house.glb"), Contains("COLOR_0") && !Contains("image/"));
+  CHECK_THAT(files.at("buildings/house.layer2.ply"), Contains("red"));
+}
+
+TEST_CASE("without its material file a house has lost its textures where it says where they lie") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  fs::remove(folder.path() / "in/house.mtl");
+  folder.built("in", "--format glb", 1);
+  CHECK_THAT(folder.err(), Contains("texture 'of house.mtl' is missing"));
+  const std::string obj = slurp(folder.path() / "in/house.obj");
+  folder.write("plain/house.obj", std::regex_replace(obj, std::regex("/[0-9]+|vt [^\n]*\n"), ""));
+  folder.built("plain", "--format glb");
+  CHECK_THAT(folder.err(), Contains("house.mtl"));
+}
+
+TEST_CASE("of two houses in one file only the one that wears a missing image has lost it") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  const std::string one = slurp(folder.path() / "in/house.obj");
+  std::string two = "o left\n" + one + "o right\nusemtl other\n";
+  std::istringstream lines(one);
+  const int points = static_cast<int>(test::gable_house(10, 8, 6, 3).vertices.size());
+  for (std::string line; std::getline(lines, line);) {
+    double x = 0, y = 0, z = 0;
+    int a = 0, b = 0, c = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3)
+      two += "v " + std::to_string(x + 40) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    if (std::sscanf(line.c_str(), "f %d/%*d %d/%*d %d/%*d", &a, &b, &c) == 3)
+      two += "f " + std::to_string(a + points) + " " + std::to_string(b + points) + " " +
+             std::to_string(c + points) + "\n";
+  }
+  folder.write("in/house.obj", two);
+  folder.write("in/house.mtl", std::string(kMtl) + "newmtl other\nKd 0 0 1\n");
+  folder.built("in", "--format glb --split object", 1);
+  const nlohmann::json buildings = folder.report()["buildings"];
+  REQUIRE(buildings.size() == 2);
+  CHECK(buildings[0]["lost"] == true);
+  CHECK(buildings[1]["lost"] == false);
 }
 
 TEST_CASE("coordinates that are none cost their faces' picture, with a warning, and no shape") {

@@ -68,9 +68,10 @@ TEST_CASE("an OBJ has its materials, images and coordinates") {
 TEST_CASE("what of an OBJ's looks is missing is told of, and its shape is the same") {
   const TempFolder folder;
   const Source s = read_quads(folder, "newmtl brick wall\nmap_Kd ../secret.png\n");
-  CHECK(warns(s, "its texture '../secret.png' is missing"));
-  CHECK(s.look.images.empty());
-  CHECK(!s.look.has_detail());
+  REQUIRE(s.look.images.size() == 1);
+  CHECK(is_missing(s.look.images[0]));  // also where such a file lies outside of the folder
+  CHECK(s.look.images[0].path == "../secret.png");
+  CHECK_THROWS_WITH(read_image(s.look.images[0], 1 << 20), "is missing");
   const Source bare = read_bytes("quads.obj", kQuads).sources.at(0);
   CHECK(warns(bare, "my materials.mtl"));
   CHECK((bare.mesh.vertices == s.mesh.vertices && bare.mesh.faces == s.mesh.faces));
@@ -234,8 +235,9 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
     CHECK(s.look.materials[0].color[0] == 0.5f);
     CHECK(s.look.face_material == std::vector<int>{0});
     if (what == "nothing") {
-      CHECK(s.look.images.empty());
-      CHECK(warns(s, "its texture 'no.png' is missing"));
+      REQUIRE(s.look.images.size() == 1);
+      CHECK(is_missing(s.look.images[0]));
+      CHECK(s.look.images[0].path == "no.png");
       continue;
     }
     CHECK(s.look.materials[0].wrap_u == Wrap::kClamp);
