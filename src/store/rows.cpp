@@ -126,8 +126,9 @@ void read_look(const Json& json, Appearance& look) {
 
 void check_look(const Source& source, const std::string& path) {
   const Appearance& look = source.look;
+  const std::size_t points = source.is_mesh() ? 0 : source.cloud.points.size();
   const auto is_as_long = [&](const auto& list) {
-    return list.empty() || list.size() == source.mesh.faces.size();
+    return list.empty() || list.size() == source.mesh.faces.size() + points;
   };
   const auto holds = [](int i, std::size_t size) { return i >= -1 && i < static_cast<int>(size); };
   bool is_sound = is_as_long(look.face_material) && is_as_long(look.uvs) && is_as_long(look.colors);
