@@ -206,7 +206,7 @@ void ImageCache::put(const ImagePlace& place, Raster raster) {
 
 ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   const std::shared_ptr<Slot> slot = impl_->slot(place);
-  const auto known = [&] { 
+  const auto known = [&] {
     return Facts{slot->size[0], slot->size[1], slot->entry.problem, slot->entry.is_lost};
   };
   {

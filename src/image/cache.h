@@ -26,7 +26,7 @@ class ImageCache {
  public:
   struct Entry {
     std::shared_ptr<const Pyramid> pyramid;  ///< null: it cannot be read
-    std::string problem;  ///< why not, or what is wrong with it; one line; empty: nothing
+    std::string problem;   ///< why not, or what is wrong with it; one line; empty: nothing
     bool is_lost = false;  ///< it, or a part of it, cannot be shown
   };
 

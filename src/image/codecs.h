@@ -17,5 +17,6 @@ DecodedImage decode_webp(std::string_view bytes, std::size_t most_bytes);
 std::string encode_jpeg(const Raster& raster, int quality);
 std::string encode_png(const Raster& raster);
 std::string encode_webp(const Raster& raster, int quality);
+std::string encode_ktx2(const Raster& raster, int quality);
 
 }  // namespace colod::codecs

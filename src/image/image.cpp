@@ -23,6 +23,8 @@ const char* mime_of(ImageFormat format) {
       return "image/webp";
     case ImageFormat::kPng:
       return "image/png";
+    case ImageFormat::kKtx2:
+      return "image/ktx2";
   }
   return "";
 }
@@ -35,6 +37,8 @@ const char* extension_of(ImageFormat format) {
       return "webp";
     case ImageFormat::kPng:
       return "png";
+    case ImageFormat::kKtx2:
+      return "ktx2";
   }
   return "";
 }
@@ -56,6 +60,8 @@ std::string encode_image(const Raster& raster, ImageFormat format, int quality) 
       return codecs::encode_jpeg(raster, quality);
     case ImageFormat::kWebp:
       return codecs::encode_webp(raster, quality);
+    case ImageFormat::kKtx2:
+      return codecs::encode_ktx2(raster, quality);
     case ImageFormat::kPng:
       break;
   }

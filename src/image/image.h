@@ -25,7 +25,10 @@ struct Raster {
   }
 };
 
-enum class ImageFormat { kJpeg, kWebp, kPng };
+enum class ImageFormat { kJpeg, kWebp, kPng, kKtx2 };
+
+/// Whether the program basisu is on the PATH.
+bool can_encode_ktx2();
 
 /// "image/jpeg" …
 const char* mime_of(ImageFormat format);
@@ -34,7 +37,7 @@ const char* extension_of(ImageFormat format);
 
 struct DecodedImage {
   Raster raster;
-  std::string remark;  ///< what is wrong with it though it could be read; empty: nothing
+  std::string remark;       ///< what is wrong with it though it could be read; empty: nothing
   bool is_damaged = false;  ///< a part of it could not be read: that is what the remark says
 };
 
@@ -43,8 +46,9 @@ struct DecodedImage {
 /// known before any of them is decoded. Thread-safe.
 DecodedImage decode_image(std::string_view bytes, std::size_t most_bytes);
 
-/// `quality` 1..100, of JPEG and WebP. The same pixels give the same bytes. Throws
-/// std::runtime_error. Thread-safe.
+/// `quality` 1..100, of all but PNG. The same pixels give the same bytes. KTX2 holds the whole mip
+/// chain, and takes the program basisu, which compresses it. Throws std::runtime_error.
+/// Thread-safe.
 std::string encode_image(const Raster& raster, ImageFormat format, int quality);
 
 }  // namespace colod

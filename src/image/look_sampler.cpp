@@ -70,8 +70,7 @@ LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCa
   std::vector<ImageCache::Facts> facts;
   for (const ImagePlace& place : look.images) facts.push_back(cache.facts(place));
   measure_texels(facts);
-  has_detail_ = !look.colors.empty() ||
-                std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
+  has_images_ = std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
   const std::vector<Wear> wear = find_wear();
   for (std::size_t i = 0; i < look.images.size(); ++i) {
     if (wear[i].faces == 0) continue;
@@ -93,7 +92,8 @@ LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCa
 }
 
 bool LookSampler::has_place(std::size_t face) const {
-  return !look_.uvs.empty() && std::all_of(look_.uvs[face].begin(), look_.uvs[face].end(), is_place);
+  return !look_.uvs.empty() &&
+         std::all_of(look_.uvs[face].begin(), look_.uvs[face].end(), is_place);
 }
 
 std::vector<LookSampler::Wear> LookSampler::find_wear() const {

@@ -43,8 +43,10 @@ class LookSampler {
   /// Metres, of the source's texels: the mean over its textured area; without images, of its faces.
   double texel() const { return texel_; }
   const ImageCache& cache() const { return cache_; }
-  /// Whether places look unlike: there is an image that can be read, or colours.
-  bool has_detail() const { return has_detail_; }
+  /// Whether there is an image that can be read.
+  bool has_images() const { return has_images_; }
+  /// Whether places look unlike: there is one, or colours.
+  bool has_detail() const { return has_images_ || !look_.colors.empty(); }
   /// One line for each image that faces without coordinates wear, or that was converted by guess;
   /// names its file.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -67,7 +69,7 @@ class LookSampler {
   const ImageCache& cache_;
   std::vector<float> texel_of_face_;  // metres; 0: no image
   double texel_ = 0;
-  bool has_detail_ = false;
+  bool has_images_ = false;
   std::vector<std::string> warnings_, losses_;
 };
 
