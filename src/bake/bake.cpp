@@ -89,9 +89,11 @@ class Painter {
                   std::to_string(charts_.size()) + " facets do not fit into " +
                       std::to_string(options.largest) + " texels: more --texture-size");
     const double ratio = atlas_.texel / std::max(sampler.texel(), 1e-9);
+    // Images have mip levels, colours of faces have none: a sample shows one of them.
+    const double covered = sampler.has_images() ? kMostTexels : 1;
     samples_ = ratio <= kOneSample
                    ? 1
-                   : std::clamp(static_cast<int>(std::ceil(ratio / kMostTexels)), 2, kMostSamples);
+                   : std::clamp(static_cast<int>(std::ceil(ratio / covered)), 2, kMostSamples);
   }
 
   BakedTexture paint() {
@@ -324,12 +326,12 @@ struct Baker::Impl {
   Probe probe;
   const ImageCache& cache;
 
-  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images)
-      : sampler(mesh, look, images), probe(mesh), cache(images) {}
+  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images, Sides sides)
+      : sampler(mesh, look, images), probe(mesh, sides), cache(images) {}
 };
 
-Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache)
-    : impl_(std::make_unique<Impl>(source, look, cache)) {}
+Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache, Sides sides)
+    : impl_(std::make_unique<Impl>(source, look, cache, sides)) {}
 Baker::~Baker() = default;
 
 bool Baker::has_detail() const { return impl_->sampler.has_detail(); }

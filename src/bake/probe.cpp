@@ -10,11 +10,16 @@ namespace colod::bake {
 
 using namespace parameters::bake;
 
-Probe::Probe(const Mesh& mesh) : rays_(mesh) {
+Probe::Probe(const Mesh& mesh, Sides sides) : rays_(mesh), has_both_sides_(sides == Sides::kBoth) {
   for (const Face& f : mesh.faces) {
     const Vec3 cross = face_cross(mesh, f);
     normals_.push_back(cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(Vec3::Zero()));
   }
+}
+
+bool Probe::agrees(int face, const Vec3& normal) const {
+  const double cosine = normals_[static_cast<std::size_t>(face)].dot(normal);
+  return (has_both_sides_ ? std::abs(cosine) : cosine) > kAgrees;
 }
 
 RayHit Probe::first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal,
@@ -22,7 +27,7 @@ RayHit Probe::first_agreeing(const Vec3& from, const Vec3& direction, const Vec3
   double begin = 0;
   for (int layer = 0; layer < kMostLayers && begin < reach; ++layer) {
     const RayHit hit = rays_.first_hit(from, direction, begin, reach);
-    if (!hit || normals_[static_cast<std::size_t>(hit.triangle)].dot(normal) > kAgrees) return hit;
+    if (!hit || agrees(hit.triangle, normal)) return hit;
     begin = hit.distance + kLift;
   }
   return {};
@@ -38,8 +43,7 @@ Found Probe::find(const Vec3& p, const Vec3& normal, double reach) const {
   if (out) return {Finding::kSeen, out.triangle, p + (out.distance - kLift) * normal};
   const double about = std::min(reach, kNearest);
   const NearestPoint near = rays_.nearest(p, about);
-  if (near.triangle >= 0 && near.distance <= about &&
-      normals_[static_cast<std::size_t>(near.triangle)].dot(normal) > kAgrees)
+  if (near.triangle >= 0 && near.distance <= about && agrees(near.triangle, normal))
     return {Finding::kNearest, near.triangle, near.point};
   return {};
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "bake.h"
 #include "core/rays.h"
 
 namespace colod::bake {
@@ -17,16 +18,18 @@ struct Found {
 
 class Probe {
  public:
-  explicit Probe(const Mesh& mesh);
+  explicit Probe(const Mesh& mesh, Sides sides = Sides::kFront);
   Found find(const Vec3& p, const Vec3& normal, double reach) const;
 
  private:
   /// The first surface along a ray whose normal agrees with `normal`; at most `reach` away.
   RayHit first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal,
                         double reach) const;
+  bool agrees(int face, const Vec3& normal) const;
 
   RayScene rays_;
   std::vector<Vec3> normals_;  // unit, per face; zero without area
+  bool has_both_sides_;
 };
 
 }  // namespace colod::bake

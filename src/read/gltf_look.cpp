@@ -128,9 +128,7 @@ class LookReader {
   }
 
   /// Number of an image that the file names and does not hold.
-  int lost(const std::string& what) {
-    return image_number(look_.images, missing_in_file(what));
-  }
+  int lost(const std::string& what) { return image_number(look_.images, missing_in_file(what)); }
 
   ImagePlace missing_in_file(const std::string& what) const {
     return missing_image(what + " of " + fs::path(path_).filename().string());

@@ -269,13 +269,13 @@ class ObjReader {
   /// What has texture coordinates, and a material that no file defines for want of a file, has lost
   /// its image.
   void lose_images() {
-    const int lost = uvs_.empty() ? -1 : library_.lost_image();
-    if (lost < 0) return;
     for (int f = 0; f < raw_.face_count(); ++f) {
       const int m = raw_.face_material[f];
       if (m < 0 || library_.materials()[m].is_defined) continue;
-      for (int c = raw_.face_begin[f]; c < raw_.face_end(f); ++c)
-        if (corner_uv_[c] >= 0) raw_.materials[m].image = lost;
+      const auto begin = corner_uv_.begin();
+      if (std::any_of(begin + raw_.face_begin[f], begin + raw_.face_end(f),
+                      [](int i) { return i >= 0; }))
+        raw_.materials[m].image = library_.lost_image();
     }
   }
 

@@ -108,6 +108,46 @@ Raster halved(const Raster& fine) {
 
 }  // namespace
 
+TEST_CASE("a cloud's colours are baked where its points are, whichever way its normals look") {
+  for (const double spacing : {0.02, 0.05, 0.1})
+    for (const double sign : {1.0, -1.0}) {
+      INFO(spacing << " " << sign);
+      PointCloud cloud;
+      std::vector<std::array<Rgb, 3>> colors;
+      for (double x = spacing / 2; x < kEdge; x += spacing)
+        for (double z = spacing / 2; z < kEdge; z += spacing) {
+          cloud.points.emplace_back(x, 0, z);
+          cloud.normals.emplace_back(0, -sign, 0);
+          const Rgb rgb = x < kEdge / 4 ? Rgb{200, 30, 30}
+                          : z < 1       ? Rgb{30, 200, 30}
+                                        : Rgb{9, 9, 240};
+          colors.push_back({rgb, rgb, rgb});
+        }
+      const Splats splats = splat_points(cloud, colors);
+      CHECK(splats.spacing == Approx(spacing).epsilon(0.2));
+      const ImageCache none(0);
+      const Baker baker(splats.mesh, splats.look, none, Sides::kBoth);
+      CHECK(baker.source_texel() == Approx(spacing).epsilon(0.4));
+      const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0.05);
+      const BakedTexture t = baker.bake(layer, {});
+      CHECK(t.facts.seen > 0.99);
+      const auto at = [&](double x, double z) {
+        for (std::size_t k = 0; k < 2; ++k) {
+          const Vec3 p(x, 0.05, z), w = barycentric(layer.mesh(), layer.triangles[k], p);
+          if (w.minCoeff() >= 0) return seen_at(t, layer, k, p, t.image);
+        }
+        return Eigen::Vector3d(0, 0, 0);
+      };
+      CHECK((at(0.6, 3) - Eigen::Vector3d(200, 30, 30)).norm() < 5);
+      CHECK((at(2, 0.6) - Eigen::Vector3d(30, 200, 30)).norm() < 5);
+      CHECK((at(3, 3) - Eigen::Vector3d(9, 9, 240)).norm() < 5);
+      const PolygonMesh halves = rectangles({{0, 0, 1, kEdge}, {1, 1, 3, 3}}, -0.05);
+      const std::vector<Rgb> mean = baker.facet_colors(halves, 0.5);
+      CHECK((mean[0][0] > 190 && mean[0][2] < 50));
+      CHECK((mean[1][2] > 230 && mean[1][0] < 40));
+    }
+}
+
 TEST_CASE("what a wall shows is baked where it is, as large as it is, and not mirrored") {
   const Wall wall(ramps());
   const Baker baker(wall.mesh, wall.look, wall.cache);
