@@ -41,6 +41,12 @@ struct Tally {
   }
 };
 
+/// Keeps references to both.
+Probe::Holes holes_in(const LookSampler& sampler, Lens& lens) {
+  if (!sampler.has_holes()) return {};
+  return [&](int face, const Vec3& point) { return sampler.is_hole(face, point, lens); };
+}
+
 /// A triangle of a chart on the chart's plane, counter-clockwise.
 struct Corners {
   std::array<Vec2, 3> at;
@@ -223,7 +229,7 @@ class Painter {
                          [&](const Corners& t) { return t.holds(at); }))
           at = triangles[static_cast<std::size_t>(own)].nearest(at);
         const Found place = probe_.find(charts_[chart].lift((at - begin) * atlas_.texel),
-                                        charts_[chart].normal, reach_);
+                                        charts_[chart].normal, reach_, holes_in(sampler_, lens));
         if (place.how == Finding::kNone) continue;
         mean += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
         ++found, seen += place.how == Finding::kSeen;
@@ -360,7 +366,7 @@ Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const LookSampl
   for (int k = 1; k <= n; ++k) {
     const Vec3 p =
         spread_on_triangle(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], k);
-    const Found found = probe.find(p, turn.normalized(), reach);
+    const Found found = probe.find(p, turn.normalized(), reach, holes_in(sampler, lens));
     if (found.how == Finding::kNone) continue;
     const Light light = sampler.sample(found.face, found.point, std::sqrt(kColorSampleArea), lens);
     sum += area / n * Sum(light[0], light[1], light[2], 1);

@@ -92,20 +92,32 @@ std::vector<Span> spans(int n, int half) {
   return out;
 }
 
+/// What is transparent has no part in the colour, unless all of a pixel is.
 Raster halve(const Raster& fine) {
   Raster out(std::max(1, fine.width / 2), std::max(1, fine.height / 2));
+  if (!fine.alpha.empty()) out.alpha.resize(out.rgb.size() / 3);
   const std::vector<Span> columns = spans(fine.width, out.width);
   const std::vector<Span> rows = spans(fine.height, out.height);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
-      std::array<float, 3> sum{};
+      std::array<float, 3> sum{}, plain{};
+      float opaque = 0;
       for (int j = 0; j < rows[y].count; ++j)
         for (int i = 0; i < columns[x].count; ++i) {
           const std::uint8_t* p = fine.at(columns[x].first + i, rows[y].first + j);
           const float weight = rows[y].weight[j] * columns[x].weight[i];
-          for (int c = 0; c < 3; ++c) sum[c] += weight * to_linear(p[c]);
+          const float alpha = fine.alpha_at(columns[x].first + i, rows[y].first + j);
+          opaque += weight * alpha;
+          for (int c = 0; c < 3; ++c) {
+            plain[c] += weight * to_linear(p[c]);
+            sum[c] += weight * alpha * to_linear(p[c]);
+          }
         }
-      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = to_srgb(sum[c]);
+      const bool is_opaque = fine.alpha.empty() || !(opaque > 0);
+      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = to_srgb(is_opaque ? plain[c] : sum[c] / opaque);
+      if (!out.alpha.empty())
+        out.alpha[static_cast<std::size_t>(y) * out.width + x] =
+            static_cast<std::uint8_t>(255 * opaque + 0.5f);
     }
   return out;
 }
@@ -120,7 +132,7 @@ std::shared_ptr<const Pyramid> build(Raster raster) {
 
 std::size_t bytes_of(const Pyramid& pyramid) {
   std::size_t bytes = 0;
-  for (const Raster& level : pyramid.levels) bytes += level.rgb.size();
+  for (const Raster& level : pyramid.levels) bytes += level.rgb.size() + level.alpha.size();
   return bytes;
 }
 

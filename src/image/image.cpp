@@ -1,5 +1,7 @@
 #include "image.h"
 
+#include <algorithm>
+
 #include "codecs.h"
 
 namespace colod {
@@ -11,6 +13,18 @@ void check_size(std::size_t width, std::size_t height, std::size_t most_bytes) {
   if (width > most_bytes / 4 / height)
     throw std::runtime_error("is " + std::to_string(width) + " x " + std::to_string(height) +
                              " pixels, more than --texture-memory allows");
+}
+
+Raster split_alpha(const std::vector<std::uint8_t>& rgba, int width, int height) {
+  Raster out(width, height);
+  std::uint8_t least = 255, most = 0;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+    std::copy_n(&rgba[4 * i], 3, &out.rgb[3 * i]);
+    least = std::min(least, rgba[4 * i + 3]), most = std::max(most, rgba[4 * i + 3]);
+  }
+  if (least == 255 || most < 128) return out;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) out.alpha.push_back(rgba[4 * i + 3]);
+  return out;
 }
 
 }  // namespace codecs

@@ -13,13 +13,19 @@ namespace colod {
 /// Pixels, sRGB, row by row from the top.
 struct Raster {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  ///< 3 a pixel
+  std::vector<std::uint8_t> rgb;    ///< 3 a pixel
+  std::vector<std::uint8_t> alpha;  ///< 1 a pixel, 255: opaque; empty: all are
 
   Raster() = default;
   Raster(int w, int h)
       : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
 
   std::uint8_t* at(int x, int y) { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+  /// 0..1.
+  float alpha_at(int x, int y) const {
+    return alpha.empty() ? 1.f
+                         : static_cast<float>(alpha[static_cast<std::size_t>(y) * width + x]) / 255;
+  }
   const std::uint8_t* at(int x, int y) const {
     return &rgb[3 * (static_cast<std::size_t>(y) * width + x)];
   }
@@ -41,7 +47,8 @@ struct DecodedImage {
   bool is_damaged = false;  ///< a part of it could not be read: that is what the remark says
 };
 
-/// JPEG (also progressive, grey, CMYK), PNG (of any kind; transparency is left out) or WebP. Throws
+/// JPEG (also progressive, grey, CMYK), PNG (of any kind) or WebP. Transparency is
+/// kept, unless no pixel is opaque by half: then it means something else. Throws
 /// std::runtime_error with the cause, also where its pixels take more than `most_bytes`, which is
 /// known before any of them is decoded. Thread-safe.
 DecodedImage decode_image(std::string_view bytes, std::size_t most_bytes);

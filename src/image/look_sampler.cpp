@@ -30,20 +30,35 @@ bool is_place(const Vec2f& uv) {
   return std::abs(uv.x()) < kFarthest && std::abs(uv.y()) < kFarthest;
 }
 
-Light bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
+/// What a place shows, and how opaque it is.
+struct Shown {
+  Light light = Light::Zero();
+  float alpha = 0;
+};
+
+/// The colour of what is transparent does not count, where the material lets it be seen through.
+Shown bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
   const double x = within_period(uv.x(), m.wrap_u) * raster.width - 0.5;
   const double y = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
   const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
-  Light sum = Light::Zero();
+  const bool is_cut = m.cutoff > 0 && !raster.alpha.empty();
+  Light all = Light::Zero(), opaque = Light::Zero();
+  float alpha = 0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const std::uint8_t* p = raster.at(wrapped(x0 + i, raster.width, m.wrap_u),
-                                        wrapped(y0 + j, raster.height, m.wrap_v));
+      const int px = wrapped(x0 + i, raster.width, m.wrap_u);
+      const int py = wrapped(y0 + j, raster.height, m.wrap_v);
+      const std::uint8_t* p = raster.at(px, py);
       const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-      sum += weight * Light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+      const Light light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+      all += weight * light;
+      if (!is_cut) continue;
+      const float own = raster.alpha_at(px, py);
+      opaque += weight * own * light, alpha += weight * own;
     }
-  return sum;
+  if (!is_cut) return {all, 1};
+  return {alpha > 0 ? Light(opaque / alpha) : all, alpha};
 }
 
 Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Material& m) {
@@ -51,9 +66,9 @@ Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Mate
   level = std::clamp(level, 0.0, last);
   const auto fine = static_cast<std::size_t>(level);
   const auto share = static_cast<float>(level - static_cast<double>(fine));
-  const Light a = bilinear(pyramid.levels[fine], uv, m);
+  const Light a = bilinear(pyramid.levels[fine], uv, m).light;
   if (share < 1e-3f) return a;
-  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m);
+  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m).light;
 }
 
 }  // namespace
@@ -71,6 +86,8 @@ LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCa
   for (const ImagePlace& place : look.images) facts.push_back(cache.facts(place));
   measure_texels(facts);
   has_images_ = std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
+  has_holes_ = std::ranges::any_of(look.materials,
+                                   [](const Material& m) { return m.image >= 0 && m.cutoff > 0; });
   const std::vector<Wear> wear = find_wear();
   for (std::size_t i = 0; i < look.images.size(); ++i) {
     if (wear[i].faces == 0) continue;
@@ -131,6 +148,24 @@ void LookSampler::measure_texels(const std::vector<ImageCache::Facts>& facts) {
     texel_ = std::sqrt(plain_area / static_cast<double>(mesh_.faces.size()));
 }
 
+Vec2 LookSampler::place_of(std::size_t f, const Vec3& weight) const {
+  if (look_.uvs.empty()) return {NAN, NAN};
+  return weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
+         weight[2] * look_.uvs[f][2].cast<double>();
+}
+
+bool LookSampler::is_hole(int face, const Vec3& point, Lens& lens) const {
+  const auto f = static_cast<std::size_t>(face);
+  const int number = look_.face_material.empty() ? -1 : look_.face_material[f];
+  if (number < 0) return false;
+  const Material& m = look_.materials[static_cast<std::size_t>(number)];
+  if (m.image < 0 || !(m.cutoff > 0)) return false;
+  const Pyramid* pyramid = lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
+  if (!pyramid || pyramid->levels[0].alpha.empty()) return false;
+  const Vec2 uv = place_of(f, barycentric(mesh_, mesh_.faces[f], point));
+  return is_place(uv.cast<float>()) && bilinear(pyramid->levels[0], uv, m).alpha < m.cutoff;
+}
+
 Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
   const auto f = static_cast<std::size_t>(face);
   Light light = Light::Ones();
@@ -150,10 +185,7 @@ Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& len
   const Pyramid* pyramid =
       m.image < 0 ? nullptr : lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
   if (!pyramid) return light;
-  Vec2 uv(NAN, NAN);
-  if (!look_.uvs.empty())
-    uv = weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
-         weight[2] * look_.uvs[f][2].cast<double>();
+  const Vec2 uv = place_of(f, weight);
   if (!is_place(uv.cast<float>())) {
     const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
     return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));

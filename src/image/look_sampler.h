@@ -40,6 +40,10 @@ class LookSampler {
   /// What a face looks like at a point of its plane; `spacing`: metres from one sample to the next.
   /// Where a face has an image and no coordinates, or none that are numbers, the image's mean.
   Light sample(int face, const Vec3& point, double spacing, Lens& lens) const;
+  /// Whether a place of a face is cut out by its image's transparency. Never where !has_holes().
+  bool is_hole(int face, const Vec3& point, Lens& lens) const;
+  /// Whether a material is seen through where its image is transparent.
+  bool has_holes() const { return has_holes_; }
   /// Metres, of the source's texels: the mean over its textured area; without images, of its faces.
   double texel() const { return texel_; }
   const ImageCache& cache() const { return cache_; }
@@ -60,6 +64,7 @@ class LookSampler {
     std::string material;        ///< of the first of them
   };
   std::vector<Wear> find_wear() const;
+  Vec2 place_of(std::size_t face, const Vec3& weight) const;
   bool has_place(std::size_t face) const;
   /// How large texels are, by face and all in all.
   void measure_texels(const std::vector<ImageCache::Facts>& facts);
@@ -69,7 +74,7 @@ class LookSampler {
   const ImageCache& cache_;
   std::vector<float> texel_of_face_;  // metres; 0: no image
   double texel_ = 0;
-  bool has_images_ = false;
+  bool has_images_ = false, has_holes_ = false;
   std::vector<std::string> warnings_, losses_;
 };
 

@@ -78,6 +78,22 @@ class LookReader {
       m.material.color[k] = static_cast<float>(std::clamp(number(factor, k, 1), 0.0, 1.0));
     const Json& texture = member(base, old.empty() ? "baseColorTexture" : "diffuseTexture");
     if (!texture.empty()) set_texture(texture, m);
+    set_cutoff(json, number(factor, 3, 1), m.material);
+  }
+
+  /// What is blended counts as there, however faint, so that panes are seen rather than what is
+  /// behind them; what hardly shows at all does not.
+  void set_cutoff(const Json& json, double factor, Material& m) const {
+    constexpr double kFaint = 0.1;
+    const std::string mode =
+        json.is_object() && json.contains("alphaMode") && json["alphaMode"].is_string()
+            ? json["alphaMode"].get<std::string>()
+            : "OPAQUE";
+    if (mode == "BLEND") m.cutoff = static_cast<float>(kFaint);
+    if (mode != "MASK") return;
+    const bool is_told = json.contains("alphaCutoff") && json["alphaCutoff"].is_number();
+    const double cutoff = is_told ? json["alphaCutoff"].get<double>() : 0.5;
+    m.cutoff = static_cast<float>(std::clamp(cutoff / std::max(factor, 1e-3), 0.0, 1.0));
   }
 
   void set_texture(const Json& info, GltfMaterial& m) {

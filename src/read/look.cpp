@@ -152,6 +152,7 @@ void MtlLibrary::set_image(Lines& lines, MtlMaterial& m) {
       (*target)[static_cast<int>(i)] = numbers[i];
   }
   m.material.image = image_number(images_, image_beside(path_, trimmed(lines.rest())));
+  m.material.cutoff = kCutoff;
 }
 
 void MtlLibrary::parse(const std::string& file, const std::string& text) {

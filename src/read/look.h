@@ -50,6 +50,9 @@ class MtlLibrary {
 /// part beside `path`. Empty: there is none.
 std::string find_beside(const std::string& path, const std::string& name);
 
+/// Alpha below which an image is seen through where a format does not say: OBJ and PLY.
+constexpr float kCutoff = 0.5f;
+
 /// The image in that file, or one that is missing.
 ImagePlace image_beside(const std::string& path, const std::string& name);
 

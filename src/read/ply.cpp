@@ -348,6 +348,7 @@ void add_textures(const std::string& path, const std::vector<std::string>& files
     raw.materials.emplace_back();
     raw.materials.back().name = name;
     raw.materials.back().image = image_number(raw.images, image_beside(path, name));
+    raw.materials.back().cutoff = kCutoff;
   }
   const int count = static_cast<int>(raw.materials.size());
   for (int& m : raw.face_material)

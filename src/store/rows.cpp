@@ -120,6 +120,7 @@ void read_look(const Json& json, Appearance& look) {
     material.image = m.at("image").get<int>();
     material.wrap_u = wrap_of(m.at("wrap_u").get<int>());
     material.wrap_v = wrap_of(m.at("wrap_v").get<int>());
+    material.cutoff = m.value("cutoff", 0.f);
     look.materials.push_back(std::move(material));
   }
 }
@@ -161,6 +162,7 @@ std::string look_json(const Appearance& look) {
     materials.push_back({{"name", m.name},
                          {"color", m.color},
                          {"image", m.image},
+                         {"cutoff", m.cutoff},
                          {"wrap_u", static_cast<int>(m.wrap_u)},
                          {"wrap_v", static_cast<int>(m.wrap_v)}});
   return Json{{"images", images}, {"materials", materials}}.dump(-1, ' ', false,
