@@ -27,13 +27,22 @@ struct LevelLook {
   std::vector<std::array<Vec2f, 3>> uvs;  ///< per triangle, 0,0 is the image's upper left corner;
                                           ///< empty: no texture
   std::string image;                      ///< encoded
+  std::string fallback;                   ///< the same as JPEG, for who does not read its format;
+                                          ///< empty: none
   int width = 0, height = 0;              ///< texels, multiples of 4
   ImageFormat format = ImageFormat::kJpeg;
   int quality = 85;               ///< of images that are made of this one
+  bool has_fallback = false;      ///< whether they have one
   Raster raster;                  ///< its pixels; empty where the encoded image alone is kept
   std::vector<Rgb> facet_colors;  ///< per facet, for where no texture is; empty: none
 
   bool has_texture() const { return !uvs.empty(); }
+  /// Sets image and fallback to these pixels.
+  void encode(const Raster& pixels) {
+    image = encode_image(pixels, format, quality);
+    if (has_fallback) fallback = encode_image(pixels, ImageFormat::kJpeg, quality);
+  }
+  std::size_t bytes() const { return image.size() + fallback.size(); }
 };
 
 /// A mesh of one building as exporters see it: one layer, or several that are alike. Coordinates:

@@ -88,7 +88,7 @@ LevelLook squared(const LevelLook& look) {
                     static_cast<float>(look.height) / static_cast<float>(height));
   for (auto& corners : out.uvs)
     for (Vec2f& uv : corners) uv = uv.cwiseProduct(scale);
-  out.image = encode_image(raster, look.format, look.quality);
+  out.encode(raster);
   return out;
 }
 

@@ -322,22 +322,46 @@ int add_material(GltfDocument& document, Json material) {
   return static_cast<int>(all.size()) - 1;
 }
 
+/// The extension that a texture needs for a format; null: none.
+const char* extension_for(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kWebp:
+      return "EXT_texture_webp";
+    case ImageFormat::kKtx2:
+      return "KHR_texture_basisu";
+    default:
+      return nullptr;
+  }
+}
+
+/// Its number.
+std::size_t add_image(GltfDocument& document, const std::string& bytes, ImageFormat format) {
+  Json& images = document.json["images"];
+  images.push_back(
+      {{"bufferView", add_buffer_view(document, bytes)}, {"mimeType", mime_of(format)}});
+  return images.size() - 1;
+}
+
 int add_texture(GltfDocument& document, const std::string& name, const LevelLook& look) {
   constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;
   Json& json = document.json;
-  json["images"].push_back(
-      {{"bufferView", add_buffer_view(document, look.image)}, {"mimeType", mime_of(look.format)}});
-  const std::size_t number = json["images"].size() - 1;
   json["samplers"] = Json::array(
       {{{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
   Json texture = {{"sampler", 0}};
-  if (look.format == ImageFormat::kWebp) {
-    texture["extensions"]["EXT_texture_webp"]["source"] = number;
-    require(document, "EXT_texture_webp");
+  const std::size_t image = add_image(document, look.image, look.format);
+  if (const char* extension = extension_for(look.format)) {
+    texture["extensions"][extension]["source"] = image;
+    if (look.fallback.empty())
+      require(document, extension);
+    else
+      name_extension(json["extensionsUsed"], extension);
+    if (!look.fallback.empty())
+      texture["source"] = add_image(document, look.fallback, ImageFormat::kJpeg);
   } else {
-    texture["source"] = number;
+    texture["source"] = image;
   }
   json["textures"].push_back(texture);
+  const std::size_t number = json["textures"].size() - 1;
   Json material = unlit(name);
   material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = number;
   return add_material(document, std::move(material));

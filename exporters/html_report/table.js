@@ -133,7 +133,7 @@ function showTable(follow) {
   update();
 }
 
-const badgeOf = (b) => (b.isFailed || b.lost ? [' ', make('span', { class: 'badge bad' }, b.isFailed ? 'failed' : 'lost a part')] : []);
+const badgeOf = (b) => (b.isFailed || b.lost ? [' ', make('span', { class: 'badge bad' }, b.isFailed ? 'failed' : b.lost_textures?.length ? 'lost a texture' : 'lost a part')] : []);
 
 function rowOf(b, all) {
   const cells = all.slice(1).map((column) => [column, column.cell(b)]);
@@ -214,6 +214,7 @@ function fillCard(card) {
   const looks = own.slice(shapes).map((_, k) => picture(shapes + k, k ? `Layer ${k - 1}` : 'Source', 'as it looks', false));
   card.append(...[b.failure, ...b.own.map((l) => l?.failure && `Layer ${l.layer}: ${l.failure}`)].filter(Boolean).map((text) => make('p', { class: 'why' }, text)),
     make('div', { class: 'strip' }, ...strip), ...looks.length ? [make('div', { class: 'strip' }, ...looks)] : []);
+  if (b.lost_textures?.length) card.append(make('p', { class: 'why' }, b.lost_textures.join('; ')));
   if (b.left_out.length) card.append(make('p', { class: 'note' }, `Left out of the source: ${leftOut(b)}.`));
   if (b.own.some((l) => l?.looks)) card.append(looksOf(b));
   if (b.own.some((l) => l && !l.failure)) card.append(measuresOf(b));

@@ -120,11 +120,17 @@ Encoded encode_obj(const ExportBuilding& building, const ExportLevel& level, int
 
 std::vector<Encoded> encode_obj_material(const ExportBuilding& building, const ExportLevel& level,
                                          int layer) {
-  if (!level.look.has_texture()) return {};
-  const std::string image = stem(building, layer) + "." + extension_of(level.look.format);
+  const LevelLook& look = level.look;
+  if (!look.has_texture()) return {};
+  // Hardly a program that reads OBJ knows KTX2: it gets what the fallback is, or would be.
+  const bool is_jpeg = !look.fallback.empty() || look.format == ImageFormat::kKtx2;
+  const ImageFormat format = is_jpeg ? ImageFormat::kJpeg : look.format;
+  const std::string image = stem(building, layer) + "." + extension_of(format);
   return {{stem(building, layer) + ".mtl", "newmtl texture\nKd 1 1 1\nillum 0\nmap_Kd " +
                                                image.substr(image.rfind('/') + 1) + "\n"},
-          {image, level.look.image}};
+          {image, look.fallback.empty() && is_jpeg ? encode_image(look.raster, format, look.quality)
+                  : is_jpeg                        ? look.fallback
+                                                   : look.image}};
 }
 
 Encoded encode_ply(const ExportBuilding& building, const ExportLevel& level, int layer) {

@@ -106,8 +106,10 @@ TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buil
     look.parts.push_back(
         moved(tile.parts[i].level->look, tile.parts[i].mesh->triangles.size(), rects[i], whole));
   look.whole.uvs = look.parts.front().uvs;  // that there is a texture
-  look.whole.image = encode_image(whole, first->format, first->quality);
   look.whole.format = first->format;
+  look.whole.quality = first->quality;
+  look.whole.has_fallback = first->has_fallback;
+  look.whole.encode(whole);
   return look;
 }
 

@@ -122,12 +122,12 @@ struct Layer {
 };
 
 struct Building {
-  std::string name;        ///< unique in the scene, safe as a file name
-  std::string given_name;  ///< as the input writes it
-  std::string source;      ///< path of the file it came from; empty: from memory
-  Point origin{};          ///< of its meshes, in the input's coordinates
-  std::string failure;     ///< why it has no layer at all; empty: it has
-  bool has_lost = false;   ///< a body of it is gone, or a layer is another's: messages() says which
+  std::string name;           ///< unique in the scene, safe as a file name
+  std::string given_name;     ///< as the input writes it
+  std::string source;         ///< path of the file it came from; empty: from memory
+  Point origin{};             ///< of its meshes, in the input's coordinates
+  std::string failure;        ///< why it has no layer at all; empty: it has
+  bool has_lost = false;      ///< a body, layer or texture of it is gone: messages() says which
   std::vector<Layer> layers;  ///< coarsest first
 };
 

@@ -41,6 +41,12 @@ struct Tally {
   }
 };
 
+/// Keeps references to both.
+Probe::Holes holes_in(const LookSampler& sampler, Lens& lens) {
+  if (!sampler.has_holes()) return {};
+  return [&](int face, const Vec3& point) { return sampler.is_hole(face, point, lens); };
+}
+
 /// A triangle of a chart on the chart's plane, counter-clockwise.
 struct Corners {
   std::array<Vec2, 3> at;
@@ -89,9 +95,11 @@ class Painter {
                   std::to_string(charts_.size()) + " facets do not fit into " +
                       std::to_string(options.largest) + " texels: more --texture-size");
     const double ratio = atlas_.texel / std::max(sampler.texel(), 1e-9);
+    // Images have mip levels, colours of faces have none: a sample shows one of them.
+    const double covered = sampler.has_images() ? kMostTexels : 1;
     samples_ = ratio <= kOneSample
                    ? 1
-                   : std::clamp(static_cast<int>(std::ceil(ratio / kMostTexels)), 2, kMostSamples);
+                   : std::clamp(static_cast<int>(std::ceil(ratio / covered)), 2, kMostSamples);
   }
 
   BakedTexture paint() {
@@ -221,7 +229,7 @@ class Painter {
                          [&](const Corners& t) { return t.holds(at); }))
           at = triangles[static_cast<std::size_t>(own)].nearest(at);
         const Found place = probe_.find(charts_[chart].lift((at - begin) * atlas_.texel),
-                                        charts_[chart].normal, reach_);
+                                        charts_[chart].normal, reach_, holes_in(sampler_, lens));
         if (place.how == Finding::kNone) continue;
         mean += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
         ++found, seen += place.how == Finding::kSeen;
@@ -324,15 +332,17 @@ struct Baker::Impl {
   Probe probe;
   const ImageCache& cache;
 
-  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images)
-      : sampler(mesh, look, images), probe(mesh), cache(images) {}
+  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images, Sides sides)
+      : sampler(mesh, look, images), probe(mesh, sides), cache(images) {}
 };
 
-Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache)
-    : impl_(std::make_unique<Impl>(source, look, cache)) {}
+Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache, Sides sides)
+    : impl_(std::make_unique<Impl>(source, look, cache, sides)) {}
 Baker::~Baker() = default;
 
+bool Baker::has_detail() const { return impl_->sampler.has_detail(); }
 const std::vector<std::string>& Baker::warnings() const { return impl_->sampler.warnings(); }
+const std::vector<std::string>& Baker::losses() const { return impl_->sampler.losses(); }
 double Baker::source_texel() const { return impl_->sampler.texel(); }
 
 BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) const {
@@ -356,7 +366,7 @@ Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const LookSampl
   for (int k = 1; k <= n; ++k) {
     const Vec3 p =
         spread_on_triangle(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], k);
-    const Found found = probe.find(p, turn.normalized(), reach);
+    const Found found = probe.find(p, turn.normalized(), reach, holes_in(sampler, lens));
     if (found.how == Finding::kNone) continue;
     const Light light = sampler.sample(found.face, found.point, std::sqrt(kColorSampleArea), lens);
     sum += area / n * Sum(light[0], light[1], light[2], 1);

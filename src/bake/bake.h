@@ -38,11 +38,26 @@ struct BakedTexture {
   BakeFacts facts;
 };
 
+/// A coloured cloud as a surface: a square a point, as wide as the cloud is dense there.
+struct Splats {
+  Mesh mesh;
+  Appearance look;
+  double spacing = 0;  ///< metres from point to point, the median
+};
+
+/// `colors` is as long as `cloud.points`; the cloud has normals. O(points · log points), in
+/// parallel.
+Splats splat_points(const PointCloud& cloud, const std::vector<std::array<Rgb, 3>>& colors);
+
+/// Which sides of a source's faces are its outside.
+enum class Sides { kFront, kBoth };
+
 /// One building's source, ready to be looked at. Keeps references to what it is given.
 class Baker {
  public:
   /// Reads all images once.
-  Baker(const Mesh& source, const Appearance& look, const ImageCache& cache);
+  Baker(const Mesh& source, const Appearance& look, const ImageCache& cache,
+        Sides sides = Sides::kFront);
   ~Baker();
 
   /// Charts are facets, those in one plane that share edges together; each is turned to its
@@ -58,8 +73,11 @@ class Baker {
   /// One colour a facet: the mean of what is seen of it.
   std::vector<Rgb> facet_colors(const PolygonMesh& mesh, double reach) const;
 
-  /// One line for each image with a fault, naming its file.
+  /// Whether places of the source look unlike: it has an image that can be read, or colours.
+  bool has_detail() const;
+  /// What LookSampler says of images.
   const std::vector<std::string>& warnings() const;
+  const std::vector<std::string>& losses() const;
   /// Metres, of the source's own texels.
   double source_texel() const;
 

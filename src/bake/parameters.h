@@ -18,6 +18,9 @@ constexpr int kMostLayers = 4;     ///< surfaces that a ray passes that do not a
 constexpr double kLift = 2e-3;     ///< metres before a facet where a ray begins, against rounding
 constexpr double kOneSample = 1.5;   ///< source texels a texel may cover with one sample
 constexpr int kMostSamples = 16;     ///< along each side of a texel
+constexpr int kNeighbours = 6;       ///< of a point, that tell how dense the cloud is about it
+constexpr double kSplat = 0.75;      ///< half a square's side, of the mean distance to them: on a
+                                     ///< square lattice squares then meet whatever their turn
 constexpr double kLeastSeen = 0.03;  ///< of a chart's texels: fewer say nothing of the rest
 constexpr double kUpright = 0.5;  ///< upright part of a wall's normal at most: what nobody saw of
                                   ///< walls looks like walls

@@ -1,8 +1,9 @@
 // Inside room `bake` only: which place of the source a place of a layer shows.
 #pragma once
 
-#include <optional>
+#include <functional>
 
+#include "bake.h"
 #include "core/rays.h"
 
 namespace colod::bake {
@@ -17,16 +18,20 @@ struct Found {
 
 class Probe {
  public:
-  explicit Probe(const Mesh& mesh);
-  Found find(const Vec3& p, const Vec3& normal, double reach) const;
+  explicit Probe(const Mesh& mesh, Sides sides = Sides::kFront);
+  /// Passes on where `is_hole` says so of a face and a place on it; empty: nowhere.
+  using Holes = std::function<bool(int face, const Vec3& point)>;
+  Found find(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole = {}) const;
 
  private:
   /// The first surface along a ray whose normal agrees with `normal`; at most `reach` away.
-  RayHit first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal,
-                        double reach) const;
+  RayHit first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal, double reach,
+                        const Holes& is_hole) const;
+  bool agrees(int face, const Vec3& normal) const;
 
   RayScene rays_;
   std::vector<Vec3> normals_;  // unit, per face; zero without area
+  bool has_both_sides_;
 };
 
 }  // namespace colod::bake

@@ -47,6 +47,12 @@ void add_light_fields(const Source& reference, const Source& model, Json& json) 
   json["silhouette_overlap"] = {{"mean", overlap.mean}, {"worst", overlap.worst}};
 }
 
+void tell_of_images(const Source& source, const LookSampler& look) {
+  for (const std::vector<std::string>* lines : {&look.losses(), &look.warnings()})
+    for (const std::string& line : *lines)
+      Log(false, false).message({Level::kWarning, source.name + ": " + line});
+}
+
 void need_look(const Source& s) {
   if (!s.is_mesh() || s.look.is_empty())
     throw Error(Stage::kInput, s.name, "has neither textures nor colours: --appearance needs them");
@@ -59,8 +65,7 @@ void add_appearance(const Source& reference, const Source& model, const EvalArgu
   const LookSampler shown(reference.mesh, reference.look, images);
   const LookSampler judged(model.mesh, model.look, images);
   for (const auto& [source, look] : {std::pair(&reference, &shown), std::pair(&model, &judged)})
-    for (const std::string& w : look->warnings())
-      Log(false, false).message({Level::kWarning, source->name + ": " + w});
+    tell_of_images(*source, *look);
   const AppearanceDifference d = compare_appearance(reference.mesh, shown, model.mesh, judged,
                                                     a.gsd > 0 ? a.gsd : judged.texel());
   json["appearance"] = {{"directions", d.directions},

@@ -15,7 +15,8 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
            read.up = v == "y" ? Up::kY : v == "auto" ? Up::kAuto : Up::kZ;
          },
          "the files' up axis: z (default, with a warning where it seems to be y), y, or auto, "
-         "which decides and says so; glTF is y, and auto turns it where its content is z up")
+         "which decides and says so; glTF is y unless z is given, and auto turns it where its "
+         "content is z up")
       ->check(CLI::IsMember({"z", "y", "auto"}));
   app.add_option_function<std::string>(
          "--unit",

@@ -49,8 +49,8 @@ inline void add_texture_options(CLI::App& app, TextureOptions& o) {
                     : v == "colors" ? Texture::kColors
                                     : Texture::kAuto;
          },
-         "auto (default): layers wear what sources with textures or vertex colours look like; "
-         "none: "
+         "auto (default): layers wear what sources with textures, or colours of vertices or "
+         "points, look like; none: "
          "one plain colour; colors: one colour a facet, a few bytes, also of plain materials")
       ->check(CLI::IsMember({"auto", "none", "colors"}));
   app.add_option("--texel-size", o.texel,
@@ -64,13 +64,20 @@ inline void add_texture_options(CLI::App& app, TextureOptions& o) {
   app.add_option_function<std::string>(
          "--texture-format",
          [&o](const std::string& v) {
-           o.format = v == "webp"  ? ImageFormat::kWebp
-                      : v == "png" ? ImageFormat::kPng
-                                   : ImageFormat::kJpeg;
+           o.format = v.starts_with("webp")   ? ImageFormat::kWebp
+                      : v.starts_with("ktx2") ? ImageFormat::kKtx2
+                      : v == "png"            ? ImageFormat::kPng
+                                              : ImageFormat::kJpeg;
+           o.has_fallback = v.ends_with("+jpeg");
          },
-         "of images: jpeg (default), webp (EXT_texture_webp, without fallback) or png")
-      ->check(CLI::IsMember({"jpeg", "webp", "png"}));
-  app.add_option("--texture-quality", o.quality, "of JPEG and WebP, default 85")
+         "of images: jpeg (default), png, webp (EXT_texture_webp), ktx2 (KHR_texture_basisu, by "
+         "the "
+         "program basisu); +jpeg adds a JPEG for clients that do not read the other")
+      ->check(CLI::IsMember({"jpeg", "png", "webp", "webp+jpeg", "ktx2", "ktx2+jpeg"}));
+  app.add_option(
+         "--texture-quality", o.quality,
+         "of JPEG and WebP as their libraries count it, of KTX2 as a share of basisu's 255; "
+         "default 85")
       ->check(number_between(1, 100));
   app.add_option("--texture-memory", o.memory,
                  "MiB that decoded images may take together, default 512; an image that takes more "

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "bake/bake.h"
 #include "cli.h"
 #include "core/parallel.h"
 #include "exporters/files.h"
@@ -26,12 +27,19 @@ struct PreviewArguments {
 
 /// Textured where it has textures or colours of its own.
 Image render(const Source& source, const PreviewArguments& a, const PreviewOptions& options) {
-  if (!source.is_mesh()) return render_preview(source.cloud, options);
+  if (!source.is_mesh() && (a.is_plain || source.look.colors.empty()))
+    return render_preview(source.cloud, options);
+  if (!source.is_mesh()) {
+    const Splats splats = splat_points(source.cloud, source.look.colors);
+    return render_preview(splats.mesh, LookSampler(splats.mesh, splats.look, ImageCache(0)),
+                          options);
+  }
   if (a.is_plain || !source.look.has_detail()) return render_preview(source.mesh, options);
   const ImageCache images(static_cast<std::size_t>(a.memory * (1 << 20)));
   const LookSampler look(source.mesh, source.look, images);
-  for (const std::string& w : look.warnings())
-    Log(false, false).message({Level::kWarning, source.name + ": " + w});
+  for (const std::vector<std::string>* lines : {&look.losses(), &look.warnings()})
+    for (const std::string& line : *lines)
+      Log(false, false).message({Level::kWarning, source.name + ": " + line});
   return render_preview(source.mesh, look, options);
 }
 

@@ -303,7 +303,7 @@ class Sources : public Depot {
 
 int export_files(const StageArguments& a) {
   const auto start = std::chrono::steady_clock::now();
-  check_place(a.output.options);
+  check_output(a.output.options);
   limit_threads(a.run.threads);
   const Log log = a.run.log();
   std::vector<Store> stores = open_all(scene_files(a));

@@ -32,6 +32,7 @@ struct Material {
   std::array<float, 3> color = {1, 1, 1};  ///< linear light; what the image shows is multiplied
   int image = -1;                          ///< index into the images; −1: one colour
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  float cutoff = 0;  ///< alpha of the image below which it is seen through; 0: nowhere
 };
 
 /// The arrays per face are as long as the mesh's faces, or empty.
@@ -40,7 +41,8 @@ struct Appearance {
   std::vector<Material> materials;
   std::vector<int> face_material;          ///< index into `materials`; −1: none
   std::vector<std::array<Vec2f, 3>> uvs;   ///< per corner; 0,0 is the image's upper left corner
-  std::vector<std::array<Rgb, 3>> colors;  ///< per corner, multiplied with the material's
+  std::vector<std::array<Rgb, 3>> colors;  ///< per corner, multiplied with the material's; of a
+                                           ///< cloud per point, three times the same
 
   bool is_empty() const { return face_material.empty() && colors.empty(); }
   /// Whether a place of a face may look unlike another place of it.

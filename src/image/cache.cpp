@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -14,6 +15,8 @@ namespace colod {
 namespace {
 
 using Key = std::tuple<std::string, std::size_t, std::size_t, std::size_t, std::size_t>;
+
+constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
 int digit_of(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -42,7 +45,12 @@ std::string decode_base64(const std::string& text) {
 
 }  // namespace
 
+ImagePlace missing_image(const std::string& name) { return {.path = name, .offset = kNowhere}; }
+
+bool is_missing(const ImagePlace& place) { return place.offset == kNowhere; }
+
 std::string read_image(const ImagePlace& place, std::size_t most_bytes) {
+  if (is_missing(place)) throw std::runtime_error("is missing");
   std::ifstream in(place.path, std::ios::binary | std::ios::ate);
   if (!in) throw std::runtime_error("is missing or cannot be opened");
   const auto size = static_cast<std::size_t>(in.tellg());
@@ -84,20 +92,32 @@ std::vector<Span> spans(int n, int half) {
   return out;
 }
 
+/// What is transparent has no part in the colour, unless all of a pixel is.
 Raster halve(const Raster& fine) {
   Raster out(std::max(1, fine.width / 2), std::max(1, fine.height / 2));
+  if (!fine.alpha.empty()) out.alpha.resize(out.rgb.size() / 3);
   const std::vector<Span> columns = spans(fine.width, out.width);
   const std::vector<Span> rows = spans(fine.height, out.height);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
-      std::array<float, 3> sum{};
+      std::array<float, 3> sum{}, plain{};
+      float opaque = 0;
       for (int j = 0; j < rows[y].count; ++j)
         for (int i = 0; i < columns[x].count; ++i) {
           const std::uint8_t* p = fine.at(columns[x].first + i, rows[y].first + j);
           const float weight = rows[y].weight[j] * columns[x].weight[i];
-          for (int c = 0; c < 3; ++c) sum[c] += weight * to_linear(p[c]);
+          const float alpha = fine.alpha_at(columns[x].first + i, rows[y].first + j);
+          opaque += weight * alpha;
+          for (int c = 0; c < 3; ++c) {
+            plain[c] += weight * to_linear(p[c]);
+            sum[c] += weight * alpha * to_linear(p[c]);
+          }
         }
-      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = to_srgb(sum[c]);
+      const bool is_opaque = fine.alpha.empty() || !(opaque > 0);
+      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = to_srgb(is_opaque ? plain[c] : sum[c] / opaque);
+      if (!out.alpha.empty())
+        out.alpha[static_cast<std::size_t>(y) * out.width + x] =
+            static_cast<std::uint8_t>(255 * opaque + 0.5f);
     }
   return out;
 }
@@ -112,7 +132,7 @@ std::shared_ptr<const Pyramid> build(Raster raster) {
 
 std::size_t bytes_of(const Pyramid& pyramid) {
   std::size_t bytes = 0;
-  for (const Raster& level : pyramid.levels) bytes += level.rgb.size();
+  for (const Raster& level : pyramid.levels) bytes += level.rgb.size() + level.alpha.size();
   return bytes;
 }
 
@@ -178,10 +198,12 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
     DecodedImage decoded = decode_image(read_image(place, impl_->budget), impl_->budget);
     slot->size = {decoded.raster.width, decoded.raster.height};
     slot->entry.problem = decoded.remark;
+    slot->entry.is_lost = decoded.is_damaged;
     slot->entry.pyramid = build(std::move(decoded.raster));
     impl_->admit(*slot, bytes_of(*slot->entry.pyramid));
   } catch (const std::exception& e) {
     slot->entry.problem = e.what();
+    slot->entry.is_lost = true;
   }
   return slot->entry;
 }
@@ -191,12 +213,14 @@ void ImageCache::put(const ImagePlace& place, Raster raster) {
   const std::lock_guard lock(slot->mutex);
   slot->is_known = true;
   slot->size = {raster.width, raster.height};
-  slot->entry = {build(std::move(raster)), ""};
+  slot->entry = {build(std::move(raster)), "", false};
 }
 
 ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   const std::shared_ptr<Slot> slot = impl_->slot(place);
-  const auto known = [&] { return Facts{slot->size[0], slot->size[1], slot->entry.problem}; };
+  const auto known = [&] {
+    return Facts{slot->size[0], slot->size[1], slot->entry.problem, slot->entry.is_lost};
+  };
   {
     const std::lock_guard lock(slot->mutex);
     if (slot->is_known) return known();

@@ -14,6 +14,11 @@ struct Pyramid {
   std::vector<Raster> levels;
 };
 
+/// Stands for an image that a source names and nobody can find; messages call it `name`. No file is
+/// ever opened for it.
+ImagePlace missing_image(const std::string& name);
+bool is_missing(const ImagePlace& place);
+
 /// The encoded image. Throws std::runtime_error where it cannot be read.
 std::string read_image(const ImagePlace& place, std::size_t most_bytes);
 
@@ -21,7 +26,8 @@ class ImageCache {
  public:
   struct Entry {
     std::shared_ptr<const Pyramid> pyramid;  ///< null: it cannot be read
-    std::string problem;  ///< why not, or what is wrong with it; one line; empty: nothing
+    std::string problem;   ///< why not, or what is wrong with it; one line; empty: nothing
+    bool is_lost = false;  ///< it, or a part of it, cannot be shown
   };
 
   /// `budget`: bytes that decoded images may take together, those in use included.
@@ -40,6 +46,7 @@ class ImageCache {
   struct Facts {
     int width = 0, height = 0;
     std::string problem;
+    bool is_lost = false;
   };
   Facts facts(const ImagePlace& place) const;
 

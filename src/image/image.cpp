@@ -1,5 +1,7 @@
 #include "image.h"
 
+#include <algorithm>
+
 #include "codecs.h"
 
 namespace colod {
@@ -13,6 +15,18 @@ void check_size(std::size_t width, std::size_t height, std::size_t most_bytes) {
                              " pixels, more than --texture-memory allows");
 }
 
+Raster split_alpha(const std::vector<std::uint8_t>& rgba, int width, int height) {
+  Raster out(width, height);
+  std::uint8_t least = 255, most = 0;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+    std::copy_n(&rgba[4 * i], 3, &out.rgb[3 * i]);
+    least = std::min(least, rgba[4 * i + 3]), most = std::max(most, rgba[4 * i + 3]);
+  }
+  if (least == 255 || most < 128) return out;
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i) out.alpha.push_back(rgba[4 * i + 3]);
+  return out;
+}
+
 }  // namespace codecs
 
 const char* mime_of(ImageFormat format) {
@@ -23,6 +37,8 @@ const char* mime_of(ImageFormat format) {
       return "image/webp";
     case ImageFormat::kPng:
       return "image/png";
+    case ImageFormat::kKtx2:
+      return "image/ktx2";
   }
   return "";
 }
@@ -35,6 +51,8 @@ const char* extension_of(ImageFormat format) {
       return "webp";
     case ImageFormat::kPng:
       return "png";
+    case ImageFormat::kKtx2:
+      return "ktx2";
   }
   return "";
 }
@@ -56,6 +74,8 @@ std::string encode_image(const Raster& raster, ImageFormat format, int quality) 
       return codecs::encode_jpeg(raster, quality);
     case ImageFormat::kWebp:
       return codecs::encode_webp(raster, quality);
+    case ImageFormat::kKtx2:
+      return codecs::encode_ktx2(raster, quality);
     case ImageFormat::kPng:
       break;
   }

@@ -136,7 +136,8 @@ DecodedImage decode_jpeg(std::string_view bytes, std::size_t most_bytes) {
   jpeg_destroy_decompress(&r.info);
   if (!cause.empty()) throw std::runtime_error(cause);
   if (!is_read) throw std::runtime_error(std::string("is damaged: ") + r.failure.cause);
-  if (r.failure.warnings > 0) out.remark = std::string("is damaged: ") + r.failure.cause;
+  out.is_damaged = r.failure.warnings > 0;
+  if (out.is_damaged) out.remark = std::string("is damaged: ") + r.failure.cause;
   return out;
 }
 

@@ -30,20 +30,35 @@ bool is_place(const Vec2f& uv) {
   return std::abs(uv.x()) < kFarthest && std::abs(uv.y()) < kFarthest;
 }
 
-Light bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
+/// What a place shows, and how opaque it is.
+struct Shown {
+  Light light = Light::Zero();
+  float alpha = 0;
+};
+
+/// The colour of what is transparent does not count, where the material lets it be seen through.
+Shown bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
   const double x = within_period(uv.x(), m.wrap_u) * raster.width - 0.5;
   const double y = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
   const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
-  Light sum = Light::Zero();
+  const bool is_cut = m.cutoff > 0 && !raster.alpha.empty();
+  Light all = Light::Zero(), opaque = Light::Zero();
+  float alpha = 0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const std::uint8_t* p = raster.at(wrapped(x0 + i, raster.width, m.wrap_u),
-                                        wrapped(y0 + j, raster.height, m.wrap_v));
+      const int px = wrapped(x0 + i, raster.width, m.wrap_u);
+      const int py = wrapped(y0 + j, raster.height, m.wrap_v);
+      const std::uint8_t* p = raster.at(px, py);
       const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-      sum += weight * Light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+      const Light light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+      all += weight * light;
+      if (!is_cut) continue;
+      const float own = raster.alpha_at(px, py);
+      opaque += weight * own * light, alpha += weight * own;
     }
-  return sum;
+  if (!is_cut) return {all, 1};
+  return {alpha > 0 ? Light(opaque / alpha) : all, alpha};
 }
 
 Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Material& m) {
@@ -51,9 +66,9 @@ Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Mate
   level = std::clamp(level, 0.0, last);
   const auto fine = static_cast<std::size_t>(level);
   const auto share = static_cast<float>(level - static_cast<double>(fine));
-  const Light a = bilinear(pyramid.levels[fine], uv, m);
+  const Light a = bilinear(pyramid.levels[fine], uv, m).light;
   if (share < 1e-3f) return a;
-  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m);
+  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m).light;
 }
 
 }  // namespace
@@ -67,44 +82,62 @@ const Pyramid* Lens::look(const ImagePlace& place, int number) {
 
 LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
     : mesh_(mesh), look_(look), cache_(cache), texel_of_face_(mesh.faces.size(), 0) {
-  std::vector<std::array<int, 2>> sizes;
-  std::vector<std::string> problems;
-  for (const ImagePlace& place : look.images) {
-    const ImageCache::Facts facts = cache.facts(place);
-    sizes.push_back({facts.width, facts.height});
-    problems.push_back(facts.problem);
-  }
-  std::vector<int> lost(look.images.size(), 0);
-  measure_texels(sizes, lost);
+  std::vector<ImageCache::Facts> facts;
+  for (const ImagePlace& place : look.images) facts.push_back(cache.facts(place));
+  measure_texels(facts);
+  has_images_ = std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
+  has_holes_ = std::ranges::any_of(look.materials,
+                                   [](const Material& m) { return m.image >= 0 && m.cutoff > 0; });
+  const std::vector<Wear> wear = find_wear();
   for (std::size_t i = 0; i < look.images.size(); ++i) {
+    if (wear[i].faces == 0) continue;
     const std::string named =
         "texture '" + std::filesystem::path(look.images[i].path).filename().string() + "' ";
-    if (!problems[i].empty())
-      warnings_.push_back(named + problems[i] +
-                          (sizes[i][0] == 0 ? ": its material's colour stands for it" : ""));
-    if (lost[i] > 0 && sizes[i][0] > 0)
-      warnings_.push_back(named + "is on " + std::to_string(lost[i]) +
+    const bool is_there = facts[i].width > 0;
+    if (facts[i].is_lost)
+      losses_.push_back(named + facts[i].problem +
+                        (is_there ? ": what could be read of it is shown"
+                                  : ": the colour of material '" + wear[i].material.substr(0, 80) +
+                                        "' stands for it") +
+                        "; --texture none builds without textures");
+    else if (!facts[i].problem.empty())
+      warnings_.push_back(named + facts[i].problem);
+    if (wear[i].without > 0 && is_there)
+      warnings_.push_back(named + "is on " + std::to_string(wear[i].without) +
                           " faces without texture coordinates: its mean colour stands for it");
   }
 }
 
-void LookSampler::measure_texels(const std::vector<std::array<int, 2>>& sizes,
-                                 std::vector<int>& lost) {
+bool LookSampler::has_place(std::size_t face) const {
+  return !look_.uvs.empty() &&
+         std::all_of(look_.uvs[face].begin(), look_.uvs[face].end(), is_place);
+}
+
+std::vector<LookSampler::Wear> LookSampler::find_wear() const {
+  std::vector<Wear> wear(look_.images.size());
+  for (std::size_t f = 0; f < look_.face_material.size(); ++f) {
+    if (look_.face_material[f] < 0) continue;
+    const Material& m = look_.materials[static_cast<std::size_t>(look_.face_material[f])];
+    if (m.image < 0) continue;
+    Wear& w = wear[static_cast<std::size_t>(m.image)];
+    if (w.faces++ == 0) w.material = m.name;
+    w.without += !has_place(f);
+  }
+  return wear;
+}
+
+void LookSampler::measure_texels(const std::vector<ImageCache::Facts>& facts) {
   double area = 0, texels = 0, plain_area = 0;
   for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
     const double own = face_area(mesh_, mesh_.faces[f]);
     plain_area += own;
     const int material = look_.face_material.empty() ? -1 : look_.face_material[f];
     const int image = material < 0 ? -1 : look_.materials[static_cast<std::size_t>(material)].image;
-    if (image < 0 || sizes[static_cast<std::size_t>(image)][0] == 0) continue;
-    if (look_.uvs.empty() || !std::all_of(look_.uvs[f].begin(), look_.uvs[f].end(), is_place)) {
-      ++lost[static_cast<std::size_t>(image)];
-      continue;
-    }
-    const auto& size = sizes[static_cast<std::size_t>(image)];
+    if (image < 0 || !has_place(f)) continue;
+    const ImageCache::Facts& size = facts[static_cast<std::size_t>(image)];
     const auto& uv = look_.uvs[f];
     const Eigen::Vector2d a = (uv[1] - uv[0]).cast<double>(), b = (uv[2] - uv[0]).cast<double>();
-    const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size[0] * size[1];
+    const double covered = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x()) * size.width * size.height;
     if (!(covered > 0) || !(own > 0)) continue;
     texel_of_face_[f] = static_cast<float>(std::sqrt(own / covered));
     area += own, texels += covered;
@@ -113,6 +146,24 @@ void LookSampler::measure_texels(const std::vector<std::array<int, 2>>& sizes,
     texel_ = std::sqrt(area / texels);
   else if (!mesh_.faces.empty())
     texel_ = std::sqrt(plain_area / static_cast<double>(mesh_.faces.size()));
+}
+
+Vec2 LookSampler::place_of(std::size_t f, const Vec3& weight) const {
+  if (look_.uvs.empty()) return {NAN, NAN};
+  return weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
+         weight[2] * look_.uvs[f][2].cast<double>();
+}
+
+bool LookSampler::is_hole(int face, const Vec3& point, Lens& lens) const {
+  const auto f = static_cast<std::size_t>(face);
+  const int number = look_.face_material.empty() ? -1 : look_.face_material[f];
+  if (number < 0) return false;
+  const Material& m = look_.materials[static_cast<std::size_t>(number)];
+  if (m.image < 0 || !(m.cutoff > 0)) return false;
+  const Pyramid* pyramid = lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
+  if (!pyramid || pyramid->levels[0].alpha.empty()) return false;
+  const Vec2 uv = place_of(f, barycentric(mesh_, mesh_.faces[f], point));
+  return is_place(uv.cast<float>()) && bilinear(pyramid->levels[0], uv, m).alpha < m.cutoff;
 }
 
 Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
@@ -134,10 +185,7 @@ Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& len
   const Pyramid* pyramid =
       m.image < 0 ? nullptr : lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
   if (!pyramid) return light;
-  Vec2 uv(NAN, NAN);
-  if (!look_.uvs.empty())
-    uv = weight[0] * look_.uvs[f][0].cast<double>() + weight[1] * look_.uvs[f][1].cast<double>() +
-         weight[2] * look_.uvs[f][2].cast<double>();
+  const Vec2 uv = place_of(f, weight);
   if (!is_place(uv.cast<float>())) {
     const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
     return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));

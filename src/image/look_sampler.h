@@ -40,22 +40,42 @@ class LookSampler {
   /// What a face looks like at a point of its plane; `spacing`: metres from one sample to the next.
   /// Where a face has an image and no coordinates, or none that are numbers, the image's mean.
   Light sample(int face, const Vec3& point, double spacing, Lens& lens) const;
+  /// Whether a place of a face is cut out by its image's transparency. Never where !has_holes().
+  bool is_hole(int face, const Vec3& point, Lens& lens) const;
+  /// Whether a material is seen through where its image is transparent.
+  bool has_holes() const { return has_holes_; }
   /// Metres, of the source's texels: the mean over its textured area; without images, of its faces.
   double texel() const { return texel_; }
   const ImageCache& cache() const { return cache_; }
-  /// One line for each image with a fault, or that faces without coordinates wear; names its file.
+  /// Whether there is an image that can be read.
+  bool has_images() const { return has_images_; }
+  /// Whether places look unlike: there is one, or colours.
+  bool has_detail() const { return has_images_ || !look_.colors.empty(); }
+  /// One line for each image that faces without coordinates wear, or that was converted by guess;
+  /// names its file.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// One line for each image that faces wear and that is not there, or not whole; names its file.
+  const std::vector<std::string>& losses() const { return losses_; }
 
  private:
-  /// How large texels are, by face and all in all; how many faces of each image have none.
-  void measure_texels(const std::vector<std::array<int, 2>>& sizes, std::vector<int>& lost);
+  /// What faces make of an image.
+  struct Wear {
+    int faces = 0, without = 0;  ///< that wear it; of them without coordinates
+    std::string material;        ///< of the first of them
+  };
+  std::vector<Wear> find_wear() const;
+  Vec2 place_of(std::size_t face, const Vec3& weight) const;
+  bool has_place(std::size_t face) const;
+  /// How large texels are, by face and all in all.
+  void measure_texels(const std::vector<ImageCache::Facts>& facts);
 
   const Mesh& mesh_;
   const Appearance& look_;
   const ImageCache& cache_;
   std::vector<float> texel_of_face_;  // metres; 0: no image
   double texel_ = 0;
-  std::vector<std::string> warnings_;
+  bool has_images_ = false, has_holes_ = false;
+  std::vector<std::string> warnings_, losses_;
 };
 
 }  // namespace colod

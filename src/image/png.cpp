@@ -1,8 +1,6 @@
 // Based on: libpng's simplified API, which turns palettes, grey and 16 bits into 8 bits of sRGB.
 #include <png.h>
 
-#include <cstring>
-
 #include "codecs.h"
 
 namespace colod::codecs {
@@ -30,10 +28,7 @@ DecodedImage decode_png(std::string_view bytes, std::size_t most_bytes) {
   image.format = PNG_FORMAT_RGBA;
   std::vector<std::uint8_t> rgba(PNG_IMAGE_SIZE(image));
   if (!png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) image.fail();
-  DecodedImage out{Raster(static_cast<int>(image.width), static_cast<int>(image.height)), {}};
-  for (std::size_t i = 0; i < rgba.size() / 4; ++i)
-    std::memcpy(&out.raster.rgb[3 * i], &rgba[4 * i], 3);
-  return out;
+  return {split_alpha(rgba, static_cast<int>(image.width), static_cast<int>(image.height)), {}};
 }
 
 std::string encode_png(const Raster& raster) {

@@ -12,11 +12,11 @@ DecodedImage decode_webp(std::string_view bytes, std::size_t most_bytes) {
   if (!WebPGetInfo(data, bytes.size(), &width, &height))
     throw std::runtime_error("is damaged: no WebP header");
   check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), most_bytes);
-  DecodedImage out{Raster(width, height), {}};
-  if (!WebPDecodeRGBInto(data, bytes.size(), out.raster.rgb.data(), out.raster.rgb.size(),
-                         3 * width))
+  std::vector<std::uint8_t> rgba(4 * static_cast<std::size_t>(width) *
+                                 static_cast<std::size_t>(height));
+  if (!WebPDecodeRGBAInto(data, bytes.size(), rgba.data(), rgba.size(), 4 * width))
     throw std::runtime_error("is damaged or truncated");
-  return out;
+  return {split_alpha(rgba, width, height), {}};
 }
 
 std::string encode_webp(const Raster& raster, int quality) {

@@ -27,7 +27,7 @@ struct Beside {
 
 Beside read_beside(const Job& job, const JobHooks& hooks) {
   validate(job.options);
-  check_place(job.output);
+  check_output(job.output);
   Beside beside;
   if (!job.truth.empty()) beside.truth = read_truth(job.truth);
   beside.prior = read_prior(job.prior);

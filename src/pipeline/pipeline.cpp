@@ -259,7 +259,7 @@ bool is_failure(StandIn reason) {
   return reason == StandIn::kInvented || reason == StandIn::kVolume;
 }
 
-bool Building::has_lost() const {
+bool Building::has_lost_shape() const {
   return std::any_of(left_out.begin(), left_out.end(), is_loss) ||
          std::any_of(layers.begin(), layers.end(),
                      [](const Layer& l) { return is_failure(l.stand_in); });

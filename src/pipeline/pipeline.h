@@ -92,13 +92,16 @@ struct Building {
   bool has_colors = false;        ///< … or any colour at all
   std::vector<LeftOut> left_out;  ///< of the source, and why
   double solid = -1;  ///< m³ that the source encloses (measure/solid.h); −1: not measured
+  std::vector<std::string> lost_looks;  ///< textures that are wanted and not there, one line each
   std::vector<std::string> warnings;
   std::string failure;  ///< why the building has no layer at all; empty: it has
 
   bool has_failed() const;
   /// Whether a body of it is gone, or a layer is another's for a failure: there is a mesh, but not
   /// all is well.
-  bool has_lost() const;
+  bool has_lost_shape() const;
+  /// That, or a texture is lost.
+  bool has_lost() const { return has_lost_shape() || !lost_looks.empty(); }
 };
 
 /// When layers switch, and how that was decided.
@@ -147,6 +150,7 @@ struct Scene {
   double coanalysis_seconds = 0;
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
   std::string tileset_failure;               ///< why there is none; empty: there is one
+  std::vector<std::string> lost_looks;       ///< of what is no building, one line each
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
   std::map<std::string, Attributes> attributes;  ///< by building's name: of footprints
   std::shared_ptr<const Context> context;  ///< what is no building; null: nothing, or left out

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <stdexcept>
 
 #include "image/cache.h"
 
@@ -38,8 +40,8 @@ Rgb plain_color(const Appearance& look, std::size_t f) {
 
 class Dresser {
  public:
-  Dresser(Source source, const TextureOptions& options)
-      : source_(std::move(source)), options_(options) {}
+  Dresser(Source source, const TextureOptions& options, LostImages& lost)
+      : source_(std::move(source)), options_(options), lost_(lost) {}
 
   ContextMesh dress() {
     const Appearance& look = source_.look;
@@ -62,34 +64,39 @@ class Dresser {
   int number_of(int image) {
     const auto [known, is_new] = numbers_.try_emplace(image, -1);
     if (!is_new) return known->second;
+    const ImagePlace& place = source_.look.images[static_cast<std::size_t>(image)];
     try {
       const std::size_t most = static_cast<std::size_t>(options_.memory * (1 << 20));
-      std::string bytes = read_image(source_.look.images[static_cast<std::size_t>(image)], most);
-      if (const auto format = format_of(bytes)) {
-        known->second = static_cast<int>(out_.images.size());
-        out_.images.push_back({std::move(bytes), *format});
-      }
-    } catch (const std::exception&) {
-      return -1;  // the face has a plain colour then
+      std::string bytes = read_image(place, most);
+      const auto format = format_of(bytes);
+      if (!format) throw std::runtime_error("is no JPEG, PNG or WebP");
+      known->second = static_cast<int>(out_.images.size());
+      out_.images.push_back({std::move(bytes), *format});
+    } catch (const std::exception& e) {
+      lost_.add("context: texture '" + std::filesystem::path(place.path).filename().string() +
+                "' " + e.what() +
+                ": a plain colour stands for it; --texture none builds without textures");
     }
     return known->second;
   }
 
   Source source_;
   const TextureOptions& options_;
+  LostImages& lost_;
   ContextMesh out_;
   std::map<int, int> numbers_;
 };
 
 }  // namespace
 
-std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options) {
+std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options,
+                                          LostImages& lost) {
   if (!scene.context) return {};
   ContextTiles tiles;
   for (const Context::Node& n : scene.context->nodes)
     tiles.nodes.push_back({n.parent, n.geometric_error, n.is_added});
-  tiles.mesh = [context = scene.context, options](std::size_t node) {
-    return Dresser(context->read(node), options).dress();
+  tiles.mesh = [context = scene.context, options, &lost](std::size_t node) {
+    return Dresser(context->read(node), options, lost).dress();
   };
   return tiles;
 }

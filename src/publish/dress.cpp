@@ -10,6 +10,8 @@ namespace colod {
 namespace {
 
 constexpr double kLeastReach = 0.25;  // metres: a source's own noise, and windows' reveals
+constexpr double kDense = 0.25;  // metres from point to point: beyond it no window shows, and what
+                                 // is baked is the scatter of single points
 constexpr int kLeastQuality = 45, kQualityStep = 10;
 constexpr double kMostReach = 4;  // metres: a larger part that a layer gave away is not its wall
 
@@ -22,17 +24,34 @@ double reach_of(const Building& b, const ExportLevel& level) {
 }
 
 /// Layers are parallel to the world's axes, the source stands in its own frame.
-Mesh turned_back(const Building& b) {
-  Mesh mesh = b.source.mesh;
-  const Frame turn{Vec3::Zero(), b.frame.yaw};
+Mesh turned_back(Mesh mesh, const Frame& frame) {
+  const Frame turn{Vec3::Zero(), frame.yaw};
   for (Vec3& v : mesh.vertices) v = turn.to_world(v);
   return mesh;
 }
 
+/// A building's source as a surface that has a look.
+struct Shown {
+  Mesh mesh;
+  Appearance look;
+  Sides sides = Sides::kFront;
+  bool is_dense = true;  ///< enough for more than a colour a facet
+
+  explicit Shown(const Building& b) : mesh(b.source.mesh), look(b.source.look) {
+    if (!b.source.is_mesh()) {
+      Splats splats = splat_points(b.source.cloud, b.source.look.colors);
+      mesh = std::move(splats.mesh), look = std::move(splats.look);
+      sides = Sides::kBoth;  // normals of clouds are guessed
+      is_dense = splats.spacing <= kDense;
+    }
+    mesh = turned_back(std::move(mesh), b.frame);
+  }
+};
+
 void note(Building& b, const ExportLevel& level, const BakeFacts& facts) {
   for (Layer& layer : b.layers)
     if (std::ranges::count(level.layers, layer.layer) > 0)
-      layer.texture = LayerTexture{facts, level.look.image.size()};
+      layer.texture = LayerTexture{facts, level.look.bytes()};
 }
 
 void warn(Building& b, const std::string& warning) {
@@ -63,9 +82,9 @@ class Allowance {
 /// may.
 void encode_within(std::size_t most, const TextureOptions& options, LevelLook& look) {
   for (look.quality = options.quality;; look.quality -= kQualityStep) {
-    look.image = encode_image(look.raster, options.format, look.quality);
+    look.encode(look.raster);
     const bool is_last = look.quality - kQualityStep < std::min(kLeastQuality, options.quality);
-    if (look.image.size() <= most || is_last || options.format == ImageFormat::kPng) return;
+    if (look.bytes() <= most || is_last || options.format == ImageFormat::kPng) return;
   }
 }
 
@@ -77,10 +96,11 @@ void dress_level(Building& b, const Baker& baker, const TextureOptions& options,
                          .reach = reach_of(b, level)};
   BakedTexture baked = baker.bake(level.mesh, bake);
   look.format = options.format;
+  look.has_fallback = options.has_fallback;
   look.width = baked.image.width, look.height = baked.image.height;
   look.raster = std::move(baked.image);
   encode_within(allowance.next(), options, look);
-  allowance.take(look.image.size());
+  allowance.take(look.bytes());
   look.uvs = std::move(baked.uvs);
   note(b, level, baked.facts);
 }
@@ -95,14 +115,16 @@ bool is_dressed(const Building& b, const TextureOptions& options) {
 
 void dress(Building& b, const TextureOptions& options, const ImageCache& images,
            ExportBuilding& out) {
-  const Mesh mesh = turned_back(b);
-  const Baker baker(mesh, b.source.look, images);
+  const Shown source(b);
+  const Baker baker(source.mesh, source.look, images, source.sides);
   for (const std::string& w : baker.warnings()) warn(b, w);
+  b.lost_looks = baker.losses();
   Allowance allowance;
   for (std::size_t i = out.levels.size(); i-- > 0;) {  // finest first
     ExportLevel& level = out.levels[i];
     level.look.facet_colors = baker.facet_colors(level.mesh, reach_of(b, level));
-    if (options.mode == Texture::kAuto) dress_level(b, baker, options, allowance, level);
+    if (options.mode == Texture::kAuto && baker.has_detail() && source.is_dense)
+      dress_level(b, baker, options, allowance, level);
   }
 }
 

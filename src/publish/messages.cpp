@@ -20,7 +20,8 @@ void add_building(const Building& b, std::vector<Message>& to) {
       to.push_back({Level::kError, place + describe(layer.stand_in)});
   }
   for (const std::string& w : loss_warnings(b))
-    to.push_back({b.has_lost() ? Level::kError : Level::kWarning, b.source.name + ": " + w});
+    to.push_back({b.has_lost_shape() ? Level::kError : Level::kWarning, b.source.name + ": " + w});
+  for (const std::string& w : b.lost_looks) to.push_back({Level::kError, b.source.name + ": " + w});
   for (const std::string& w : b.warnings) to.push_back({Level::kWarning, b.source.name + ": " + w});
 }
 
@@ -32,6 +33,7 @@ std::vector<Message> problems_of(const Scene& scene) {
   for (const std::string& w : scene.switching.warnings) all.push_back({Level::kWarning, w});
   if (!scene.tileset_failure.empty())
     all.push_back({Level::kError, "tileset.json is not written: " + scene.tileset_failure});
+  for (const std::string& w : scene.lost_looks) all.push_back({Level::kError, w});
   for (const ReadFailure& f : scene.failures)
     all.push_back({Level::kError, f.path + ": " + f.message});
   for (const Building& b : scene.buildings) add_building(b, all);
@@ -53,7 +55,8 @@ Message summary_of(const Scene& scene, double seconds, const std::string& out) {
 }
 
 int exit_code(const Scene& scene) {
-  std::size_t failed = scene.failures.size() + !scene.tileset_failure.empty();
+  std::size_t failed =
+      scene.failures.size() + !scene.tileset_failure.empty() + scene.lost_looks.size();
   for (const Building& b : scene.buildings) failed += b.has_failed() || b.has_lost();
   if (failed == 0) return 0;
   const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),

@@ -118,7 +118,7 @@ void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
     if (pictures && !pictures->empty() && w.options.texture.mode == Texture::kAuto)
       add_looks(w, b, out, *pictures);
   } catch (const std::exception& e) {  // a failure of its looks alone
-    b.warnings.push_back(std::string("is written without textures: ") + e.what());
+    b.lost_looks.push_back(std::string("is written without textures: ") + e.what());
     for (ExportLevel& level : out.levels) level.look = {};
   }
   depot.drop(b);
@@ -149,7 +149,8 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                   const SwitchFacts& facts, const OutputOptions& a, const Take& take,
                   const Tell& tell) {
   std::vector<Encoded> files;
-  const std::optional<ContextTiles> around = context_tiles(scene, a.texture);
+  LostImages lost;
+  const std::optional<ContextTiles> around = context_tiles(scene, a.texture, lost);
   try {
     files = encode_tileset(buildings,
                            {.compression = a.compression,
@@ -163,6 +164,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
     scene.tileset_failure = e.what();
     return;
   }
+  scene.lost_looks = lost.lines();
   if (writes(a, "3tz")) take(encode_3tz(files));
   if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) take(files[i]);
@@ -176,7 +178,13 @@ SwitchOptions switch_options(const OutputOptions& a) {
   return options;
 }
 
-void check_place(const OutputOptions& a) {
+void check_output(const OutputOptions& a) {
+  if (a.texture.format == ImageFormat::kKtx2 && a.texture.mode == Texture::kAuto &&
+      !can_encode_ktx2())
+    throw Error(
+        Stage::kUsage, "--texture-format",
+        "ktx2 is written by the program basisu (Basis Universal), which is not on the PATH: "
+        "install it, or choose webp");
   if (const auto given = georeference_from_options(a.crs, a.origin))
     place_on_earth(*given, Vec3::Zero());
 }

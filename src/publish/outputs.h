@@ -22,6 +22,7 @@ struct TextureOptions {
   double texel = 0;    ///< metres, of the finest layer; 0: as the source
   int largest = 4096;  ///< texels a side of an atlas
   ImageFormat format = ImageFormat::kJpeg;
+  bool has_fallback = false;  ///< a JPEG beside each image of another format
   int quality = 85;
   double memory = 512;  ///< MiB that decoded images may take
 };
@@ -46,8 +47,9 @@ using Take = std::function<void(const Encoded&)>;
 /// With the rounding of what is written.
 SwitchOptions switch_options(const OutputOptions& options);
 
-/// Throws Error{kUsage} when crs and origin name no place; before the work rather than after.
-void check_place(const OutputOptions& options);
+/// Throws Error{kUsage} when crs and origin name no place, or images cannot be written in their
+/// format; before the work rather than after.
+void check_output(const OutputOptions& options);
 
 /// After decide_switches: dresses the layers of each building in what its source looks like, which
 /// `depot` brings back, makes the files of all buildings, then those of the scene, tileset.json

@@ -122,10 +122,12 @@ Json building_json(const Building& b, bool has_prior) {
                      {"pictures", b.timings.pictures},
                      {"export", b.timings.export_}};
   std::vector<std::string> warnings = loss_warnings(b);
+  warnings.insert(warnings.end(), b.lost_looks.begin(), b.lost_looks.end());
   json["heavy_warnings"] = warnings.size();
   warnings.insert(warnings.end(), b.warnings.begin(), b.warnings.end());
   json["warnings"] = warnings;
   json["lost"] = b.has_lost();
+  json["lost_textures"] = b.lost_looks;
   if (!b.failure.empty()) json["failure"] = b.failure;
   return json;
 }
@@ -213,8 +215,10 @@ Json coanalysis_json(const Scene& scene) {
 /// How much is amiss, over all buildings.
 void count_losses(const Scene& scene, Json& totals) {
   std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0;
+  std::size_t textures = scene.lost_looks.size();
   for (const Building& b : scene.buildings) {
     failed += !b.failure.empty();
+    textures += b.lost_looks.size();
     for (const LeftOut& l : b.left_out) bodies += is_loss(l);
     for (const Layer& layer : b.layers)
       layers += !layer.failure.empty(), stand_ins += is_failure(layer.stand_in);
@@ -223,6 +227,7 @@ void count_losses(const Scene& scene, Json& totals) {
   totals["failed_layers"] = layers;
   totals["stand_in_layers"] = stand_ins;
   totals["lost_bodies"] = bodies;
+  totals["lost_textures"] = textures;
 }
 
 }  // namespace
@@ -253,6 +258,7 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["warnings"] = scene.warnings;
+  json["lost_textures"] = scene.lost_looks;
   for (const ClassArea& c : scene.classes)
     json["classes"].push_back({{"name", c.name}, {"area", c.area}});
   json["buildings"] = Json::array();

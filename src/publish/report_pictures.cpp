@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/bake.h"
 #include "core/stopwatch.h"
 #include "image/look_sampler.h"
 
@@ -179,8 +180,10 @@ std::vector<std::string> draw_looks(const Building& b, const ExportBuilding& out
                             .has_edges = false,
                             .box = frame_of(b, levels)};
   std::vector<std::string> pictures(1 + b.layers.size());
-  const LookSampler source(b.source.mesh, b.source.look, images);
-  pictures[0] = encode_photo(render_preview(b.source.mesh, source, view), options.most_bytes);
+  const Splats splats = b.source.is_mesh() ? Splats{b.source.mesh, b.source.look}
+                                           : splat_points(b.source.cloud, b.source.look.colors);
+  const LookSampler source(splats.mesh, splats.look, images);
+  pictures[0] = encode_photo(render_preview(splats.mesh, source, view), options.most_bytes);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!out.levels[i].look.has_texture()) continue;
     const std::string picture = draw_level(out.levels[i], levels[i], view, options.most_bytes);

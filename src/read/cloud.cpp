@@ -3,6 +3,7 @@
 // Notation: none.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "formats.h"
 
@@ -42,17 +43,27 @@ bool has_normals(const RawFile& raw) {
   return static_cast<double>(without) <= kMostWithout * static_cast<double>(raw.normals.size());
 }
 
+/// One colour for all is none.
+bool has_colors(const RawFile& raw) {
+  const std::vector<Rgb>& colors = raw.point_colors;
+  return colors.size() == raw.points.size() &&
+         std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>()) != colors.end();
+}
+
 }  // namespace
 
 Source read_cloud(const std::string& path, const RawFile& raw) {
   Source s;
-  const bool keeps_normals = has_normals(raw);
+  const bool keeps_normals = has_normals(raw), keeps_colors = has_colors(raw);
   std::size_t dropped = 0;
   for (std::size_t i = 0; i < raw.points.size(); ++i) {
     const bool is_good = is_usable(raw.points[i]) && (!keeps_normals || raw.normals[i].norm() > 0);
     if (!is_good && ++dropped) continue;
     s.cloud.points.push_back(raw.points[i]);
     if (keeps_normals) s.cloud.normals.push_back(raw.normals[i]);
+    if (!keeps_colors) continue;
+    const Rgb& rgb = raw.point_colors[i];
+    s.look.colors.push_back({rgb, rgb, rgb});
   }
   leave_out_strays(s);
   if (s.cloud.points.size() < 3) fail(path, "neither a face nor 3 points with usable coordinates");

@@ -216,6 +216,7 @@ void localize_cloud(Source& local, std::vector<int>& original) {
     if (has_normals) local.cloud.normals.push_back(cloud.normals[i]);
     original.push_back(i);
   }
+  local.look.pick(original);
 }
 
 }  // namespace

@@ -27,10 +27,10 @@ struct GltfLook {
   std::vector<ImagePlace> images;
 };
 
-/// Faults cost an image, with a warning, and nothing else. `binary`: where the GLB's own buffer
-/// begins in the file.
+/// Faults cost an image, which is a missing one then, and nothing else. `binary`: where the GLB's
+/// own buffer begins in the file.
 GltfLook read_gltf_look(const std::string& path, std::string_view bytes, std::size_t binary,
-                        const nlohmann::json& json, std::vector<std::string>& warnings);
+                        const nlohmann::json& json);
 
 /// A file as tinygltf took it apart, without what shapes do not need.
 struct GltfDocument {

@@ -357,7 +357,7 @@ GltfDocument open_gltf(const std::string& path, std::string_view bytes, std::siz
   note_losses(json, document.warnings);
   const std::size_t binary =
       chunks.binary.empty() ? 0 : begin + (chunks.binary.data() - bytes.data());
-  document.look = read_gltf_look(path, bytes, binary, json, document.warnings);
+  document.look = read_gltf_look(path, bytes, binary, json);
   json = drop_shapeless(std::move(json));
   check_sizes(path, json);
   drop_draco_indices(json);

@@ -7,6 +7,7 @@
 
 #include "formats.h"
 #include "gltf.h"
+#include "image/cache.h"
 #include "look.h"
 
 namespace colod::mesh_io {
@@ -55,9 +56,8 @@ double number(const Json& list, std::size_t i, double none) {
 
 class LookReader {
  public:
-  LookReader(const std::string& path, std::string_view bytes, std::size_t binary, const Json& json,
-             std::vector<std::string>& warnings)
-      : path_(path), bytes_(bytes), binary_(binary), json_(json), warnings_(warnings) {}
+  LookReader(const std::string& path, std::string_view bytes, std::size_t binary, const Json& json)
+      : path_(path), bytes_(bytes), binary_(binary), json_(json) {}
 
   GltfLook read() {
     for (const Json& m : member(json_, "materials", Json::value_t::array)) add_material(m);
@@ -78,6 +78,22 @@ class LookReader {
       m.material.color[k] = static_cast<float>(std::clamp(number(factor, k, 1), 0.0, 1.0));
     const Json& texture = member(base, old.empty() ? "baseColorTexture" : "diffuseTexture");
     if (!texture.empty()) set_texture(texture, m);
+    set_cutoff(json, number(factor, 3, 1), m.material);
+  }
+
+  /// What is blended counts as there, however faint, so that panes are seen rather than what is
+  /// behind them; what hardly shows at all does not.
+  void set_cutoff(const Json& json, double factor, Material& m) const {
+    constexpr double kFaint = 0.1;
+    const std::string mode =
+        json.is_object() && json.contains("alphaMode") && json["alphaMode"].is_string()
+            ? json["alphaMode"].get<std::string>()
+            : "OPAQUE";
+    if (mode == "BLEND") m.cutoff = static_cast<float>(kFaint);
+    if (mode != "MASK") return;
+    const bool is_told = json.contains("alphaCutoff") && json["alphaCutoff"].is_number();
+    const double cutoff = is_told ? json["alphaCutoff"].get<double>() : 0.5;
+    m.cutoff = static_cast<float>(std::clamp(cutoff / std::max(factor, 1e-3), 0.0, 1.0));
   }
 
   void set_texture(const Json& info, GltfMaterial& m) {
@@ -96,8 +112,10 @@ class LookReader {
     }
     const Json& textures = member(json_, "textures", Json::value_t::array);
     const int i = index(info, "index");
-    if (i < 0 || i >= static_cast<int>(textures.size()))
-      return warn("names texture " + std::to_string(i) + ", which it does not hold");
+    if (i < 0 || i >= static_cast<int>(textures.size())) {
+      m.material.image = lost("texture " + std::to_string(i));
+      return;
+    }
     const Json& texture = textures[static_cast<std::size_t>(i)];
     set_sampler(index(texture, "sampler"), m.material);
     set_image(texture, m.material);
@@ -117,15 +135,19 @@ class LookReader {
     const Json& extensions = member(texture, "extensions");
     int source = index(member(extensions, "EXT_texture_webp"), "source");
     if (source < 0) source = index(texture, "source");
-    if (source < 0 && index(member(extensions, "KHR_texture_basisu"), "source") >= 0)
-      return warn(
-          "its textures are KTX2 (KHR_texture_basisu), which is not read: write them as "
-          "JPEG, PNG or WebP");
+    if (source < 0) source = index(member(extensions, "KHR_texture_basisu"), "source");
     const Json& images = member(json_, "images", Json::value_t::array);
-    if (source < 0 || source >= static_cast<int>(images.size()))
-      return warn("names image " + std::to_string(source) + ", which it does not hold");
-    const ImagePlace place = find_image(images[static_cast<std::size_t>(source)], source);
-    if (!place.path.empty()) m.image = image_number(look_.images, place);
+    m.image = source < 0 || source >= static_cast<int>(images.size())
+                  ? lost("image " + std::to_string(source))
+                  : image_number(look_.images,
+                                 find_image(images[static_cast<std::size_t>(source)], source));
+  }
+
+  /// Number of an image that the file names and does not hold.
+  int lost(const std::string& what) { return image_number(look_.images, missing_in_file(what)); }
+
+  ImagePlace missing_in_file(const std::string& what) const {
+    return missing_image(what + " of " + fs::path(path_).filename().string());
   }
 
   ImagePlace find_image(const Json& image, int number) {
@@ -134,20 +156,17 @@ class LookReader {
     const Json& views = member(json_, "bufferViews", Json::value_t::array);
     const int v = index(image, "bufferView");
     if (v >= 0 && v < static_cast<int>(views.size()))
-      return place_of_view(views[static_cast<std::size_t>(v)]);
-    warn("its image " + std::to_string(number) + " has neither bytes nor a file");
-    return {};
+      return place_of_view(views[static_cast<std::size_t>(v)], number);
+    return missing_in_file("image " + std::to_string(number));
   }
 
-  ImagePlace place_of_view(const Json& view) {
+  ImagePlace place_of_view(const Json& view, int number) const {
     const Json& buffers = member(json_, "buffers", Json::value_t::array);
     const int b = index(view, "buffer");
     const auto offset = static_cast<std::size_t>(index(view, "byteOffset", 0));
     const auto length = static_cast<std::size_t>(index(view, "byteLength", 0));
-    if (b < 0 || b >= static_cast<int>(buffers.size()) || length == 0) {
-      warn("an image names a buffer that it does not hold");
-      return {};
-    }
+    if (b < 0 || b >= static_cast<int>(buffers.size()) || length == 0)
+      return missing_in_file("image " + std::to_string(number));
     const Json& buffer = buffers[static_cast<std::size_t>(b)];
     ImagePlace place{.path = path_};
     if (!buffer.is_object() || !buffer.contains("uri")) {
@@ -155,6 +174,7 @@ class LookReader {
       return place;
     }
     place = place_of_uri(buffer["uri"].is_string() ? buffer["uri"].get<std::string>() : "");
+    if (is_missing(place)) return place;
     if (place.is_base64)
       place.skip = offset, place.take = length;
     else
@@ -162,15 +182,13 @@ class LookReader {
     return place;
   }
 
-  ImagePlace place_of_uri(const std::string& uri) {
-    if (uri.starts_with("data:")) return place_of_data(uri);
-    const std::string file = find_beside(path_, percent_decoded(uri));
-    if (file.empty()) warn("its texture '" + uri.substr(0, 80) + "' is missing");
-    return {.path = file};
+  ImagePlace place_of_uri(const std::string& uri) const {
+    return uri.starts_with("data:") ? place_of_data(uri)
+                                    : image_beside(path_, percent_decoded(uri));
   }
 
   /// Where a data URI stands in the file.
-  ImagePlace place_of_data(const std::string& uri) {
+  ImagePlace place_of_data(const std::string& uri) const {
     const std::size_t comma = uri.find(',');
     const std::size_t digits = uri.size() - std::min(comma + 1, uri.size());
     for (std::size_t at = 0;
@@ -188,29 +206,21 @@ class LookReader {
       const std::size_t before = error || size < bytes_.size() ? 0 : size - bytes_.size();
       return {.path = path_, .offset = before + at, .length = end - at, .is_base64 = true};
     }
-    warn("an image in a data URI is no base64");
-    return {};
-  }
-
-  /// Each once.
-  void warn(const std::string& what) {
-    if (std::find(warnings_.begin(), warnings_.end(), what) == warnings_.end())
-      warnings_.push_back(what);
+    return missing_in_file("base64 of an image");
   }
 
   const std::string& path_;
   std::string_view bytes_;
   std::size_t binary_;
   const Json& json_;
-  std::vector<std::string>& warnings_;
   GltfLook look_;
 };
 
 }  // namespace
 
 GltfLook read_gltf_look(const std::string& path, std::string_view bytes, std::size_t binary,
-                        const Json& json, std::vector<std::string>& warnings) {
-  return LookReader(path, bytes, binary, json, warnings).read();
+                        const Json& json) {
+  return LookReader(path, bytes, binary, json).read();
 }
 
 }  // namespace colod::mesh_io

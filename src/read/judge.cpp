@@ -116,10 +116,13 @@ int slopes_say_y(const Facts& facts) {
   return is_contradicted(facts, 1, 2) ? -1 : 0;
 }
 
-/// glTF is y up by its format, and was turned by that; some converters write z up all the same.
+/// glTF is y up by its format, and was turned by that; some converters write z up all the same,
+/// which --up z says.
 /// Returns the axis that seems to be up, 1 or 2, of what was turned.
 int judge_turned_axis(const Facts& facts, const ReadOptions& options, Reading& how) {
-  if (options.up == Up::kY || options.up == Up::kZ || slopes_say_y(facts) <= 0) return 2;
+  how.is_turned_back = options.up == Up::kZ;
+  if (how.is_turned_back) return 1;
+  if (options.up == Up::kY || slopes_say_y(facts) <= 0) return 2;
   const std::string why =
       "read y up, as glTF is, a large part of its faces hangs over; read z up, next to none does";
   how.is_turned_back = options.up == Up::kAuto;

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "files.h"
+#include "image/cache.h"
 
 namespace colod::mesh_io {
 
@@ -62,6 +63,11 @@ std::string find_beside(const std::string& path, const std::string& name) {
   return {};
 }
 
+ImagePlace image_beside(const std::string& path, const std::string& name) {
+  const std::string file = find_beside(path, name);
+  return file.empty() ? missing_image(name.substr(0, 80)) : ImagePlace{.path = file};
+}
+
 int image_number(std::vector<ImagePlace>& images, const ImagePlace& place) {
   const auto known = std::find(images.begin(), images.end(), place);
   if (known == images.end()) {
@@ -91,9 +97,10 @@ void MtlLibrary::load(const std::string& names) {
     if (end > 0 && end < names.size()) has_found |= load_file(std::string(rest.substr(0, end)));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  if (!has_found)
-    warnings_.push_back("its material file '" + names.substr(0, 80) +
-                        "' is missing: faces have no colour of their own");
+  if (has_found) return;
+  missing_ = names.substr(0, 80);
+  warnings_.push_back("its material file '" + missing_ +
+                      "' is missing: faces have no colour of their own");
 }
 
 bool MtlLibrary::load_file(const std::string& name) {
@@ -102,6 +109,7 @@ bool MtlLibrary::load_file(const std::string& name) {
   try {
     parse(file, as_text(read_bytes(file, kLargestMtl)));
   } catch (const Error& e) {  // appearance alone: shapes go on
+    missing_ = name.substr(0, 80);
     warnings_.push_back(std::string("its material file cannot be read: ") + e.what());
   }
   return true;
@@ -143,14 +151,8 @@ void MtlLibrary::set_image(Lines& lines, MtlMaterial& m) {
     for (std::size_t i = 0; target && i < std::min<std::size_t>(2, numbers.size()); ++i)
       (*target)[static_cast<int>(i)] = numbers[i];
   }
-  const std::string name = trimmed(lines.rest());
-  const std::string file = find_beside(path_, name);
-  if (file.empty())
-    warnings_.push_back("its texture '" + name.substr(0, 80) +
-                        "' is missing: the colour of material '" + m.material.name.substr(0, 80) +
-                        "' stands for it");
-  else
-    m.material.image = image_number(images_, {.path = file});
+  m.material.image = image_number(images_, image_beside(path_, trimmed(lines.rest())));
+  m.material.cutoff = kCutoff;
 }
 
 void MtlLibrary::parse(const std::string& file, const std::string& text) {
@@ -160,6 +162,7 @@ void MtlLibrary::parse(const std::string& file, const std::string& text) {
     const std::string key = lower(std::string(lines.token()));
     if (key == "newmtl") {
       m = &materials_[static_cast<std::size_t>(number(trimmed(lines.rest())))];
+      m->is_defined = true;
     } else if (m && key == "kd") {
       double rgb[3] = {0.6, 0.6, 0.6};
       for (double& v : rgb)
@@ -172,7 +175,13 @@ void MtlLibrary::parse(const std::string& file, const std::string& text) {
     }
   }
   for (MtlMaterial& each : materials_)
-    if (each.material.image >= 0) each.material.color = {1, 1, 1};
+    if (const int i = each.material.image;
+        i >= 0 && !is_missing(images_[static_cast<std::size_t>(i)]))
+      each.material.color = {1, 1, 1};
+}
+
+int MtlLibrary::lost_image() {
+  return missing_.empty() ? -1 : image_number(images_, missing_image("of " + missing_));
 }
 
 void warn_of_unworn(RawFile& raw) {

@@ -12,6 +12,7 @@ namespace colod::mesh_io {
 struct MtlMaterial {
   Material material;
   Vec2 scale = Vec2(1, 1), shift = Vec2(0, 0);  ///< of texture coordinates: scale · uv + shift
+  bool is_defined = false;                      ///< by a file that is there
 };
 
 /// What the MTL files of an OBJ say. Images are looked for where the file says and, by their bare
@@ -27,7 +28,9 @@ class MtlLibrary {
 
   const std::vector<MtlMaterial>& materials() const { return materials_; }
   const std::vector<ImagePlace>& images() const { return images_; }
-  /// One line for each thing that is missing.
+  /// Number of the image that stands for those of a file which is not there; −1: all are.
+  int lost_image();
+  /// One line for each file that is missing.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -36,7 +39,8 @@ class MtlLibrary {
   void set_image(Lines& lines, MtlMaterial& m);
   int find(const std::string& name) const;
 
-  std::string path_;  // of the OBJ
+  std::string path_;     // of the OBJ
+  std::string missing_;  // a file that cannot be read; empty: none
   std::vector<MtlMaterial> materials_;
   std::vector<ImagePlace> images_;
   std::vector<std::string> warnings_;
@@ -45,6 +49,12 @@ class MtlLibrary {
 /// The file that `name` stands for in the folder of `path`, or below: as it is written, or its last
 /// part beside `path`. Empty: there is none.
 std::string find_beside(const std::string& path, const std::string& name);
+
+/// Alpha below which an image is seen through where a format does not say: OBJ and PLY.
+constexpr float kCutoff = 0.5f;
+
+/// The image in that file, or one that is missing.
+ImagePlace image_beside(const std::string& path, const std::string& name);
 
 /// Of a URI.
 std::string percent_decoded(const std::string& uri);

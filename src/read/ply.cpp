@@ -347,11 +347,8 @@ void add_textures(const std::string& path, const std::vector<std::string>& files
   for (const std::string& name : files) {
     raw.materials.emplace_back();
     raw.materials.back().name = name;
-    const std::string file = find_beside(path, name);
-    if (file.empty())
-      raw.warnings.push_back("its texture '" + name.substr(0, 80) + "' is missing");
-    else
-      raw.materials.back().image = image_number(raw.images, {.path = file});
+    raw.materials.back().image = image_number(raw.images, image_beside(path, name));
+    raw.materials.back().cutoff = kCutoff;
   }
   const int count = static_cast<int>(raw.materials.size());
   for (int& m : raw.face_material)

@@ -1,13 +1,14 @@
 // Based on: what programs write as XYZ, PWN, PTS, ASC, CSV and TXT: a point a line.
 // Differs: no library. Separators are blanks, commas or semicolons, decimals may have a comma, a
-// header line names columns, and unit vectors without a negative value are taken for colours until
-// the surface says otherwise.
+// header line names columns, unit vectors without a negative value are taken for colours until the
+// surface says otherwise, and so are three columns of bytes that reach beyond numbers of classes.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "files.h"
 #include "formats.h"
+#include "look.h"
 
 namespace colod::mesh_io {
 
@@ -18,6 +19,7 @@ constexpr int kTableRows = 20;           // fewer points are no building
 constexpr int kExtras = 6;               // columns beside x, y and z that are looked at
 constexpr double kUnitTolerance = 0.02;  // normals may be written with two decimals
 constexpr double kUnitShare = 0.99;      // of the rows
+constexpr double kMostClass = 31;        // of LAS up to 1.3
 
 using Fields = std::vector<std::string_view>;
 
@@ -84,28 +86,32 @@ double value_or_nan(std::string_view field, char separator) {
   return parse(field, separator, value) ? value : NAN;
 }
 
-/// Where x, y, z and the normal stand; −1: nowhere.
+/// Where x, y, z, the normal and the colour stand; −1: nowhere.
 struct Columns {
-  std::array<int, 6> of = {0, 1, 2, -1, -1, -1};
+  std::array<int, 9> of = {0, 1, 2, -1, -1, -1, -1, -1, -1};
 
+  bool has_colors() const { return of[6] >= 0 && of[7] >= 0 && of[8] >= 0; }
   int last() const { return std::max({of[0], of[1], of[2]}); }
   bool has_normals() const { return of[3] >= 0 && of[4] >= 0 && of[5] >= 0; }
 };
 
 /// By a header's words, where they name all three axes.
 Columns columns_of(const Fields& names) {
-  static const std::vector<std::string> kNames[6] = {
+  static const std::vector<std::string> kNames[9] = {
       {"x", "easting", "east", "lon", "longitude", "rechtswert", "coordx", "xcoord"},
       {"y", "northing", "north", "lat", "latitude", "hochwert", "coordy", "ycoord"},
       {"z", "height", "elevation", "altitude", "h", "coordz", "zcoord"},
       {"nx", "normalx", "normal_x"},
       {"ny", "normaly", "normal_y"},
-      {"nz", "normalz", "normal_z"}};
-  Columns found{{-1, -1, -1, -1, -1, -1}};
+      {"nz", "normalz", "normal_z"},
+      {"r", "red"},
+      {"g", "green"},
+      {"b", "blue"}};
+  Columns found{{-1, -1, -1, -1, -1, -1, -1, -1, -1}};
   for (std::size_t i = 0; i < names.size(); ++i) {
     std::string name = lower(std::string(trimmed(names[i], " \t/\"'")));
     name = name.substr(0, name.find_first_of("([ "));  // units behind it
-    for (std::size_t k = 0; k < 6; ++k)
+    for (std::size_t k = 0; k < 9; ++k)
       if (found.of[k] < 0 && std::count(kNames[k].begin(), kNames[k].end(), name) > 0)
         found.of[k] = static_cast<int>(i);
   }
@@ -142,6 +148,9 @@ class Table {
       set_normals(0);
     else
       find_normals();
+    find_colors();
+    if (is_without_normals_ && raw_.point_colors.empty())
+      raw_.warnings.push_back("columns 4 to 6 are no unit normals and were left out");
     return std::move(raw_);
   }
 
@@ -184,6 +193,17 @@ class Table {
       extra[k] = is_there ? static_cast<float>(value_or_nan(fields[at], separator_)) : NAN;
     }
     extras_.push_back(extra);
+    if (columns_.has_colors()) take_color(fields);
+  }
+
+  /// As the header names its columns.
+  void take_color(const Fields& fields) {
+    std::array<float, 3> color{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(columns_.of[6 + k]);
+      if (at < fields.size()) color[k] = static_cast<float>(value_or_nan(fields[at], separator_));
+    }
+    named_colors_.push_back(color);
   }
 
   Vec3 vector(std::size_t row, int first) const {
@@ -209,8 +229,41 @@ class Table {
       raw_.has_doubtful_normals = !has_negative;
       return set_normals(first);
     }
-    if (header_lines_ == 0 && vector(0, 0).allFinite())
-      raw_.warnings.push_back("columns 4 to 6 are no unit normals and were left out");
+    is_without_normals_ = header_lines_ == 0 && vector(0, 0).allFinite();
+  }
+
+  /// Colours by name, of 0..1, bytes or 16 bits by the largest of them all; else the first three
+  /// columns of bytes: behind the coordinates, an intensity or the normal.
+  void find_colors() {
+    if (named_colors_.size() == raw_.points.size()) {
+      float most = 0;
+      for (const auto& c : named_colors_) most = std::max({most, c[0], c[1], c[2]});
+      const double one = most > 255 ? 65535 : most > 1 ? 255 : 1;
+      for (const auto& c : named_colors_)
+        raw_.point_colors.push_back(rgb_of(c[0] / one, c[1] / one, c[2] / one));
+      return;
+    }
+    for (const int first : {0, 1, 3}) {
+      if (!are_bytes(first)) continue;
+      for (std::size_t i = 0; i < extras_.size(); ++i) {
+        const Vec3 c = vector(i, first) / 255;
+        raw_.point_colors.push_back(rgb_of(c[0], c[1], c[2]));
+      }
+      return;
+    }
+  }
+
+  /// Classes, returns and users' bits are small numbers; of a colour some component is not, and
+  /// each of its own columns varies.
+  bool are_bytes(int first) const {
+    Vec3 least = Vec3::Constant(INFINITY), most = Vec3::Constant(-INFINITY);
+    for (std::size_t i = 0; i < extras_.size(); ++i) {
+      const Vec3 v = vector(i, first);
+      if (!(v.array() >= 0).all() || !(v.array() <= 255).all() || v != v.array().floor().matrix())
+        return false;
+      least = least.cwiseMin(v), most = most.cwiseMax(v);
+    }
+    return (most.array() > kMostClass).all() && (most.array() > least.array()).all();
   }
 
   Lines lines_;
@@ -218,7 +271,9 @@ class Table {
   char separator_ = ' ';
   int header_lines_ = 0;
   Columns columns_;
+  bool is_without_normals_ = false;
   std::vector<std::array<float, kExtras>> extras_;
+  std::vector<std::array<float, 3>> named_colors_;  // one a point, where a header names them
   RawFile raw_;
 };
 

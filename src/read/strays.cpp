@@ -189,14 +189,18 @@ void drop(Source& source, const std::vector<char>& is_stray) {
   source.look.pick(faces);
 }
 
-void drop(PointCloud& cloud, const std::vector<char>& is_stray) {
+void drop_points(Source& source, const std::vector<char>& is_stray) {
   PointCloud kept;
+  std::vector<int> which;
+  const PointCloud& cloud = source.cloud;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (is_stray[i]) continue;
+    which.push_back(static_cast<int>(i));
     kept.points.push_back(cloud.points[i]);
     if (!cloud.normals.empty()) kept.normals.push_back(cloud.normals[i]);
   }
-  cloud = std::move(kept);
+  source.cloud = std::move(kept);
+  source.look.pick(which);
 }
 
 /// Of what goes: the area of whole pieces, not of slivers that lead to a stray vertex.
@@ -254,7 +258,7 @@ void leave_out_strays(Source& s) {
   if (s.is_mesh())
     drop(s, is_stray);
   else
-    drop(s.cloud, is_stray);
+    drop_points(s, is_stray);
 }
 
 }  // namespace colod::mesh_io

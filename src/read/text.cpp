@@ -266,10 +266,24 @@ class ObjReader {
     corner_uv_.push_back(i < 0 ? static_cast<int>(uvs_.size()) + i : i - 1);
   }
 
+  /// What has texture coordinates, and a material that no file defines for want of a file, has lost
+  /// its image.
+  void lose_images() {
+    for (int f = 0; f < raw_.face_count(); ++f) {
+      const int m = raw_.face_material[f];
+      if (m < 0 || library_.materials()[m].is_defined) continue;
+      const auto begin = corner_uv_.begin();
+      if (std::any_of(begin + raw_.face_begin[f], begin + raw_.face_end(f),
+                      [](int i) { return i >= 0; }))
+        raw_.materials[m].image = library_.lost_image();
+    }
+  }
+
   /// Coordinates as materials place them, from the upper left.
   void add_look() {
-    raw_.images = library_.images();
     for (const MtlMaterial& m : library_.materials()) raw_.materials.push_back(m.material);
+    lose_images();
+    raw_.images = library_.images();
     raw_.warnings.insert(raw_.warnings.end(), library_.warnings().begin(),
                          library_.warnings().end());
     if (raw_.point_colors.size() != raw_.points.size()) raw_.point_colors.clear();

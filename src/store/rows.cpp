@@ -121,14 +121,16 @@ void read_look(const Json& json, Appearance& look) {
     material.image = m.at("image").get<int>();
     material.wrap_u = wrap_of(m.at("wrap_u").get<int>());
     material.wrap_v = wrap_of(m.at("wrap_v").get<int>());
+    material.cutoff = m.value("cutoff", 0.f);
     look.materials.push_back(std::move(material));
   }
 }
 
 void check_look(const Source& source, const std::string& path) {
   const Appearance& look = source.look;
+  const std::size_t points = source.is_mesh() ? 0 : source.cloud.points.size();
   const auto is_as_long = [&](const auto& list) {
-    return list.empty() || list.size() == source.mesh.faces.size();
+    return list.empty() || list.size() == source.mesh.faces.size() + points;
   };
   const auto holds = [](int i, std::size_t size) { return i >= -1 && i < static_cast<int>(size); };
   bool is_sound = is_as_long(look.face_material) && is_as_long(look.uvs) && is_as_long(look.colors);
@@ -161,6 +163,7 @@ std::string look_json(const Appearance& look) {
     materials.push_back({{"name", m.name},
                          {"color", m.color},
                          {"image", m.image},
+                         {"cutoff", m.cutoff},
                          {"wrap_u", static_cast<int>(m.wrap_u)},
                          {"wrap_v", static_cast<int>(m.wrap_v)}});
   return Json{{"images", images}, {"materials", materials}}.dump(-1, ' ', false,

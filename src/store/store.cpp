@@ -12,6 +12,7 @@
 #include <set>
 
 #include "core/hash.h"
+#include "image/cache.h"
 #include "options_text.h"
 #include "parts.h"
 #include "rules/rules.h"
@@ -360,6 +361,23 @@ void TemporaryStore::get(Building& b) {
 
 void TemporaryStore::drop(Building& b) { drop_geometry(b); }
 
+namespace {
+
+constexpr std::size_t kMostOfImage = std::size_t{1} << 30;  // bytes
+
+/// What a file that is not there, or ends too early, adds differs from what it adds later.
+void add_image(const ImagePlace& place, Hash& hash) {
+  std::string bytes;
+  try {
+    bytes = read_image(place, kMostOfImage);
+  } catch (const std::exception& e) {
+    bytes = e.what();
+  }
+  hash.add(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
 std::string segments_key(const Source& source, const Options& options) {
   Hash hash;
   hash.add(source.mesh.vertices);
@@ -371,6 +389,7 @@ std::string segments_key(const Source& source, const Options& options) {
   hash.add(source.look.colors);
   const std::string look = look_json(source.look);
   hash.add(look.data(), look.size());
+  for (const ImagePlace& place : source.look.images) add_image(place, hash);
   Options relevant = options;  // what only later rooms read does not outdate segments
   const Options defaults;
   relevant.layers = defaults.layers;

@@ -89,8 +89,9 @@ class TemporaryStore : public Depot {
   Store store_;
 };
 
-/// A key for Store::put_segments: a hash of the source's content, of the options and rules that
-/// rooms up to `segments` depend on, and of this colod's own rules and their numbers.
+/// A key for Store::put_segments: a hash of the source's content, its images' bytes, of the options
+/// and rules that rooms up to `segments` depend on, and of this colod's own rules and their
+/// numbers.
 std::string segments_key(const Source& source, const Options& options);
 
 }  // namespace colod

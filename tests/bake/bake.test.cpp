@@ -108,6 +108,84 @@ Raster halved(const Raster& fine) {
 
 }  // namespace
 
+TEST_CASE("what is cut out of an image is seen through, and its colour is baked nowhere") {
+  // A black fence before the wall: transparent but for posts of 32 of 64 pixels, which are red.
+  for (const float cutoff : {0.5f, 0.f}) {
+    Wall wall(painted(kSide, [](int, int) { return Rgb{30, 200, 30}; }));
+    Raster fence = painted(kSide, [](int x, int) {
+      return x / 32 % 2 ? Rgb{200, 30, 30} : Rgb{0, 0, 0};
+    });
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) fence.alpha.push_back(x / 32 % 2 ? 255 : 0);
+    const ImagePlace place{.path = "fence"};
+    wall.cache.put(place, fence);
+    wall.look.images.push_back(place);
+    wall.look.materials.push_back({.name = "fence", .image = 1, .cutoff = cutoff});
+    for (int i = 0; i < 4; ++i)
+      wall.mesh.vertices.push_back(wall.mesh.vertices[static_cast<std::size_t>(i)] -
+                                   0.1 * Vec3::UnitY());
+    wall.mesh.faces.push_back({4, 5, 6}), wall.mesh.faces.push_back({4, 6, 7});
+    wall.look.face_material.insert(wall.look.face_material.end(), 2, 1);
+    wall.look.uvs.push_back(wall.look.uvs[0]), wall.look.uvs.push_back(wall.look.uvs[1]);
+    const Baker baker(wall.mesh, wall.look, wall.cache);
+    for (const double texel : {0.0, 0.1}) {
+      const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, -0.1);
+      const BakedTexture t = baker.bake(layer, {.texel = texel, .reach = 0.5});
+      INFO(cutoff << " " << texel);
+      for (int k = 0; k < 8; ++k) {
+        const Vec3 p((k + 0.5) * kEdge / 8, -0.1, 1.3);
+        const Vec3 w = barycentric(layer.mesh(), layer.triangles[0], p);
+        const Eigen::Vector3d seen = seen_at(t, layer, w.minCoeff() >= 0 ? 0 : 1, p, t.image);
+        const Eigen::Vector3d behind =
+            cutoff > 0 ? Eigen::Vector3d(30, 200, 30) : Eigen::Vector3d(0, 0, 0);
+        CHECK((seen - (k % 2 ? Eigen::Vector3d(200, 30, 30) : behind)).norm() < 8);
+      }
+    }
+    const Rgb mean = baker.facet_colors(rectangles({{0, 0, kEdge, kEdge}}, -0.1), 0.5)[0];
+    CHECK((mean[1] > 100) == (cutoff > 0));
+  }
+}
+
+TEST_CASE("a cloud's colours are baked where its points are, whichever way its normals look") {
+  for (const double spacing : {0.02, 0.05, 0.1})
+    for (const double sign : {1.0, -1.0}) {
+      INFO(spacing << " " << sign);
+      PointCloud cloud;
+      std::vector<std::array<Rgb, 3>> colors;
+      for (double x = spacing / 2; x < kEdge; x += spacing)
+        for (double z = spacing / 2; z < kEdge; z += spacing) {
+          cloud.points.emplace_back(x, 0, z);
+          cloud.normals.emplace_back(0, -sign, 0);
+          const Rgb rgb = x < kEdge / 4 ? Rgb{200, 30, 30}
+                          : z < 1       ? Rgb{30, 200, 30}
+                                        : Rgb{9, 9, 240};
+          colors.push_back({rgb, rgb, rgb});
+        }
+      const Splats splats = splat_points(cloud, colors);
+      CHECK(splats.spacing == Approx(spacing).epsilon(0.2));
+      const ImageCache none(0);
+      const Baker baker(splats.mesh, splats.look, none, Sides::kBoth);
+      CHECK(baker.source_texel() == Approx(spacing).epsilon(0.4));
+      const PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0.05);
+      const BakedTexture t = baker.bake(layer, {});
+      CHECK(t.facts.seen > 0.99);
+      const auto at = [&](double x, double z) {
+        for (std::size_t k = 0; k < 2; ++k) {
+          const Vec3 p(x, 0.05, z), w = barycentric(layer.mesh(), layer.triangles[k], p);
+          if (w.minCoeff() >= 0) return seen_at(t, layer, k, p, t.image);
+        }
+        return Eigen::Vector3d(0, 0, 0);
+      };
+      CHECK((at(0.6, 3) - Eigen::Vector3d(200, 30, 30)).norm() < 5);
+      CHECK((at(2, 0.6) - Eigen::Vector3d(30, 200, 30)).norm() < 5);
+      CHECK((at(3, 3) - Eigen::Vector3d(9, 9, 240)).norm() < 5);
+      const PolygonMesh halves = rectangles({{0, 0, 1, kEdge}, {1, 1, 3, 3}}, -0.05);
+      const std::vector<Rgb> mean = baker.facet_colors(halves, 0.5);
+      CHECK((mean[0][0] > 190 && mean[0][2] < 50));
+      CHECK((mean[1][2] > 230 && mean[1][0] < 40));
+    }
+}
+
 TEST_CASE("what a wall shows is baked where it is, as large as it is, and not mirrored") {
   const Wall wall(ramps());
   const Baker baker(wall.mesh, wall.look, wall.cache);

@@ -107,6 +107,43 @@ TEST_CASE("a GLB begins with the coarsest level's image, unlit, and WebP is name
         glb.json["bufferViews"][first + 1]["byteOffset"]);
 }
 
+TEST_CASE("a fallback is what a client reads that does not know the other format") {
+  for (const ImageFormat format : {ImageFormat::kWebp, ImageFormat::kKtx2}) {
+    const TemporaryFolder folder;
+    ExportBuilding house = dressed(three_layers("house", kOrigin));
+    for (ExportLevel& level : house.levels) {
+      level.look.fallback = encode_image(level.look.raster, ImageFormat::kJpeg, 90);
+      level.look.format = format;
+      level.look.image = format == ImageFormat::kWebp ? encode_image(level.look.raster, format, 90)
+                                                      : std::string("\xABKTX 20\xBB\r\n\x1A\n");
+    }
+    const Encoded file = encode_building_glb(house);
+    const Glb glb = parse_glb(file.bytes);
+    const char* extension =
+        format == ImageFormat::kWebp ? "EXT_texture_webp" : "KHR_texture_basisu";
+    REQUIRE(glb.json["images"].size() == 6);
+    REQUIRE(glb.json["textures"].size() == 3);
+    for (int i = 0; i < 3; ++i) {
+      const auto& texture = glb.json["textures"][i];
+      CHECK(glb.json["images"][texture["source"].get<int>()]["mimeType"] == "image/jpeg");
+      CHECK(glb.json["images"][texture["extensions"][extension]["source"].get<int>()]["mimeType"] ==
+            mime_of(format));
+      CHECK(glb.json["materials"][i]["pbrMetallicRoughness"]["baseColorTexture"]["index"] == i);
+    }
+    const auto& used = glb.json["extensionsUsed"];
+    CHECK(std::count(used.begin(), used.end(), extension) == 1);
+    const auto required = glb.json.value("extensionsRequired", nlohmann::json::array());
+    CHECK(std::count(required.begin(), required.end(), extension) == 0);
+    std::vector<Encoded> files = {encode_obj(house, house.levels[1], 1)};
+    for (Encoded& more : encode_obj_material(house, house.levels[1], 1)) files.push_back(more);
+    CHECK_THAT(files[2].path, Catch::EndsWith(".jpg"));
+    CHECK(std::abs(shade(written(folder, files)) - 100) <= 1);
+    const Source s = written(folder, {file});
+    CHECK(farthest(s, kOrigin) < 0.5);
+    if (format == ImageFormat::kWebp) CHECK(std::abs(shade(s) - 150) <= 2);
+  }
+}
+
 TEST_CASE("colours of facets come back as colours of vertices") {
   const TemporaryFolder folder;
   ExportBuilding house = dressed(three_layers("house", kOrigin));

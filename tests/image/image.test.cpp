@@ -204,3 +204,38 @@ TEST_CASE("rectangles are packed without overlap") {
   CHECK(area > 0.85 * width * height);
   CHECK(pack_rects(rects, 64)[0] == 0);
 }
+
+TEST_CASE("an image keeps its alpha, unless it has none or no pixel is opaque by half") {
+  for (const int high : {255, 128, 100})
+    for (const int low : {0, 60, 255}) {
+      INFO(low << " " << high);
+      std::vector<std::uint8_t> rgba;
+      for (int i = 0; i < 16; ++i)
+        rgba.insert(rgba.end(), {7, 8, static_cast<std::uint8_t>(i),
+                                 static_cast<std::uint8_t>(i % 2 ? high : std::min(low, high))});
+      const Raster raster =
+          decode_image(png(4, 4, PNG_FORMAT_RGBA, rgba.data(), nullptr, 0), kRoom).raster;
+      CHECK(raster.at(3, 1)[2] == 7);
+      const bool is_kept = high >= 128 && !(low == 255 && high == 255);
+      REQUIRE(raster.alpha.empty() == !is_kept);
+      if (is_kept) CHECK((raster.alpha[6] == std::min(low, high) && raster.alpha[7] == high));
+    }
+}
+
+TEST_CASE("what is transparent has no part in coarser levels") {
+  Raster half(8, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      half.at(x, y)[0] = x % 2 ? 200 : 0;
+      half.alpha.push_back(x % 2 ? 255 : 0);
+    }
+  ImageCache cache(1 << 20);
+  const ImagePlace place{.path = "half"};
+  cache.put(place, half);
+  const auto pyramid = cache.get(place).pyramid;
+  REQUIRE(pyramid);
+  for (std::size_t k = 1; k < pyramid->levels.size(); ++k) {
+    CHECK(pyramid->levels[k].at(0, 0)[0] == 200);
+    CHECK(pyramid->levels[k].alpha_at(0, 0) == Approx(0.5).margin(0.01));
+  }
+}

@@ -282,6 +282,14 @@ TEST_CASE(
       CHECK(warnings_of("a.glb", glb(mapped(house, to_y_up)), {.up = Up::kAuto}) == "");
       CHECK_THAT(warnings_of("a.glb", glb(house)), Contains("--up auto"));
       CHECK(warnings_of("a.glb", glb(house), {.up = Up::kY}) == "");
+      CHECK(warnings_of("a.glb", glb(house), {.up = Up::kZ}) == "");
+      const Source told = only(read_bytes("a.glb", glb(house), {.up = Up::kZ}));
+      CHECK((bounding_box(told.mesh.vertices).max - bounding_box(house.vertices).max).norm() <
+            1e-5);
+      CHECK(signed_volume(told.mesh) == Approx(signed_volume(house)).epsilon(1e-5));
+      const Source lying = only(read_bytes("a.glb", glb(house), {.up = Up::kY}));
+      CHECK(bounding_box(lying.mesh.vertices).size().z() ==
+            Approx(bounding_box(house.vertices).size().y()));
       const Source s = only(read_bytes("a.glb", glb(house), {.up = Up::kAuto}));
       CHECK_THAT(joined(s.warnings), Contains("taken as z up"));
       CHECK((bounding_box(s.mesh.vertices).max - bounding_box(house.vertices).max).norm() < 1e-5);

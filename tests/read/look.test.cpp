@@ -51,6 +51,7 @@ TEST_CASE("an OBJ has its materials, images and coordinates") {
   CHECK(look.materials[0].image == 0);
   CHECK(look.materials[0].color == std::array<float, 3>{1, 1, 1});  // the image alone counts
   CHECK(look.materials[0].wrap_u == Wrap::kClamp);
+  CHECK(look.materials[0].cutoff == 0.5f);
   CHECK(look.materials[1].color[0] == 1);
   CHECK(look.materials[1].color[2] == Approx(0.214).epsilon(0.01));
   REQUIRE(look.images.size() == 1);
@@ -68,9 +69,10 @@ TEST_CASE("an OBJ has its materials, images and coordinates") {
 TEST_CASE("what of an OBJ's looks is missing is told of, and its shape is the same") {
   const TempFolder folder;
   const Source s = read_quads(folder, "newmtl brick wall\nmap_Kd ../secret.png\n");
-  CHECK(warns(s, "its texture '../secret.png' is missing"));
-  CHECK(s.look.images.empty());
-  CHECK(!s.look.has_detail());
+  REQUIRE(s.look.images.size() == 1);
+  CHECK(is_missing(s.look.images[0]));  // also where such a file lies outside of the folder
+  CHECK(s.look.images[0].path == "../secret.png");
+  CHECK_THROWS_WITH(read_image(s.look.images[0], 1 << 20), "is missing");
   const Source bare = read_bytes("quads.obj", kQuads).sources.at(0);
   CHECK(warns(bare, "my materials.mtl"));
   CHECK((bare.mesh.vertices == s.mesh.vertices && bare.mesh.faces == s.mesh.faces));
@@ -227,6 +229,9 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
                 what == "file"  // the specification's example: the image's lower left quarter
                     ? Json{{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}}
                     : Json{{"offset", {0.25, 0}}, {"scale", {2, 3}}}}}}}}}}}};
+    if (what == "file")
+      j["materials"][0]["alphaMode"] = "MASK", j["materials"][0]["alphaCutoff"] = 0.25;
+    if (what == "buffer") j["materials"][0]["alphaMode"] = "BLEND";
     const ReadResult result = read_sources({folder.write("a.gltf", j.dump())});
     REQUIRE(result.sources.size() == 1);
     const Source& s = result.sources[0];
@@ -234,12 +239,14 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
     CHECK(s.look.materials[0].color[0] == 0.5f);
     CHECK(s.look.face_material == std::vector<int>{0});
     if (what == "nothing") {
-      CHECK(s.look.images.empty());
-      CHECK(warns(s, "its texture 'no.png' is missing"));
+      REQUIRE(s.look.images.size() == 1);
+      CHECK(is_missing(s.look.images[0]));
+      CHECK(s.look.images[0].path == "no.png");
       continue;
     }
     CHECK(s.look.materials[0].wrap_u == Wrap::kClamp);
     CHECK(s.look.materials[0].wrap_v == Wrap::kMirror);
+    CHECK(s.look.materials[0].cutoff == (what == "file" ? 0.25f : what == "buffer" ? 0.1f : 0.f));
     REQUIRE(s.look.uvs.size() == 1);
     const std::array<Vec2f, 3> wanted =
         what == "file" ? std::array{Vec2f(0, 1), Vec2f(0, 0.5f), Vec2f(0.5f, 1)}

@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 
+#include "read/frame.h"
 #include "read_helpers.h"
 
 using namespace colod;
@@ -353,4 +354,64 @@ TEST_CASE("formats that are not read say in one line how to convert them") {
     CHECK(message.find('\n') == message.npos);
   }
   CHECK_THAT(failure("a.asc", "ncols 4\nnrows 4\nxllcorner 0\n1 2 3 4\n"), Contains("gdal"));
+}
+
+TEST_CASE("points keep their colours, by a header's names or as bytes, and classes are none") {
+  const PointCloud cloud = box_points(400, {12, 8, 6}, {100, 200, 5});
+  const auto shade = [](std::size_t i, int k) { return static_cast<int>((37 * i + 80 * k) % 256); };
+  const auto three = [&](std::size_t i, double scale) {
+    std::string text;
+    for (int k = 0; k < 3; ++k) text += " " + std::to_string(std::lround(scale * shade(i, k)));
+    return text;
+  };
+  const auto normal = [&](std::size_t i) {
+    std::string text;
+    for (int k = 0; k < 3; ++k) text += " " + std::to_string(std::lround(cloud.normals[i][k]));
+    return text;
+  };
+  struct Way {
+    const char *name, *head;
+    std::function<std::string(std::size_t)> more;
+    bool has_colors = true;
+  };
+  const Way ways[] = {
+      {"a.xyz", "", [&](std::size_t i) { return three(i, 1); }},
+      {"a.pts", "400\n",
+       [&](std::size_t i) { return " -" + std::to_string(i + 900) + three(i, 1); }},
+      {"a.pwn", "", [&](std::size_t i) { return normal(i) + three(i, 1); }},
+      {"a.csv", "x y z R G B\n", [&](std::size_t i) { return three(i, 257); }},
+      {"a.csv", "x y z class red green blue\n", [&](std::size_t i) { return " 6" + three(i, 1); }},
+      {"a.xyz", "", [&](std::size_t i) { return " " + std::to_string(i % 7) + " 1 2"; }, false},
+      {"a.xyz", "", [&](std::size_t) { return " 255 255 255"; }, false},
+      {"a.xyz", "", [&](std::size_t i) { return " " + std::to_string(i * 9) + " 7 40"; }, false}};
+  for (const Way& way : ways) {
+    INFO(way.name << " " << way.head << way.more(1));
+    const Source s = only(read_bytes(way.name, way.head + table(cloud, " ", '.', way.more)));
+    REQUIRE(s.cloud.points.size() == 400);
+    REQUIRE(s.look.colors.size() == (way.has_colors ? 400 : 0));
+    for (std::size_t i = 0; i < s.look.colors.size(); ++i)
+      for (int k = 0; k < 3; ++k) CHECK(s.look.colors[i][0][k] == shade(i, k));
+  }
+}
+
+TEST_CASE("a point keeps its colour in its building's frame") {
+  const PointCloud cloud = box_points(300, {12, 8, 6}, {100, 200, 5});
+  const Source s =
+      only(read_bytes("a.xyz", table(cloud, " ", '.', [](std::size_t i) {
+                        return " " + std::to_string(i % 200) + " 40 " + std::to_string(i / 2);
+                      })));
+  CHECK(s.look.colors.empty());  // the second column does not vary
+  Source colored = s;
+  for (std::size_t i = 0; i < s.cloud.points.size(); ++i) {
+    const Rgb rgb = {static_cast<std::uint8_t>(i % 256), static_cast<std::uint8_t>(i / 256), 7};
+    colored.look.colors.push_back({rgb, rgb, rgb});
+  }
+  const Frame frame = main_frame(colored);
+  const Source local = localize(colored, frame);
+  REQUIRE(local.look.colors.size() == local.cloud.points.size());
+  for (std::size_t i = 0; i < local.cloud.points.size(); ++i) {
+    const Rgb& rgb = local.look.colors[i][0];
+    const Vec3& before = s.cloud.points[static_cast<std::size_t>(rgb[0] + 256 * rgb[1])];
+    CHECK((local.cloud.points[i] - frame.to_local(before)).norm() < 1e-4);
+  }
 }
