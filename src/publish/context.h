@@ -8,7 +8,14 @@
 
 namespace colod {
 
-/// Nothing where the scene has no context. It points into `scene`.
-std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options);
+/// Per node: tiles and images that could not be read when it was encoded.
+using ContextFailures = std::vector<std::vector<ReadFailure>>;
+
+/// Nothing where the scene has no context. It points into `scene` and fills `failures`.
+std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options,
+                                          ContextFailures& failures);
+
+/// Each once: of the finest tiles as failures of the scene, of coarser ones as warnings.
+void tell_failures(const ContextFailures& failures, Scene& scene);
 
 }  // namespace colod

@@ -1,6 +1,8 @@
 #include "outputs.h"
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
 
 #include "context.h"
 #include "core/parallel.h"
@@ -149,7 +151,19 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                   const SwitchFacts& facts, const OutputOptions& a, const Take& take,
                   const Tell& tell) {
   std::vector<Encoded> files;
-  const std::optional<ContextTiles> around = context_tiles(scene, a.texture);
+  ContextFailures failures;
+  std::mutex mutex;
+  std::exception_ptr unwritten;
+  const Take writer = [&](const Encoded& file) {
+    try {
+      take(file);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      unwritten = std::current_exception();
+      throw;
+    }
+  };
+  const std::optional<ContextTiles> around = context_tiles(scene, a.texture, failures);
   try {
     files = encode_tileset(buildings,
                            {.compression = a.compression,
@@ -158,11 +172,14 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .switching = facts,
                             .largest_texture = a.texture.largest,
                             .context = around ? &*around : nullptr,
+                            .take_context = writes(a, "3tz") ? Take{} : writer,
                             .placement = find_placement(scene, a.crs, a.origin, buildings, tell)});
   } catch (const std::exception& e) {
+    if (unwritten) std::rethrow_exception(unwritten);
     scene.tileset_failure = e.what();
     return;
   }
+  tell_failures(failures, scene);
   if (writes(a, "3tz")) take(encode_3tz(files));
   if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) take(files[i]);
