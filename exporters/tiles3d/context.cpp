@@ -113,14 +113,16 @@ Json box_json(const Box& box) {
 
 std::vector<ContextTile> encode_context(const ContextTiles& context, const TileFrame& frame,
                                         Compression compression, double quantization,
-                                        std::vector<Encoded>& files) {
+                                        const std::function<void(const Encoded&)>& take) {
   const std::size_t count = context.nodes.size();
   std::vector<ContextTile> tiles(count);
-  std::vector<Encoded> contents(count);
+  std::vector<char> is_shown(count, 0);
+  const auto path_of = [](std::size_t i) { return "tiles/context/" + std::to_string(i) + ".glb"; };
   parallel_for(count, [&](std::size_t i) {
-    contents[i].path = "tiles/context/" + std::to_string(i) + ".glb";
-    contents[i].bytes = glb_of(context.mesh(i), frame, "context-" + std::to_string(i), compression,
-                               quantization, tiles[i].box);
+    const Encoded file{path_of(i), glb_of(context.mesh(i), frame, "context-" + std::to_string(i),
+                                          compression, quantization, tiles[i].box)};
+    is_shown[i] = !file.bytes.empty();
+    if (is_shown[i]) take(file);
   });
   std::vector<Json> children(count, Json::array());
   std::vector<ContextTile> tops;
@@ -128,17 +130,16 @@ std::vector<ContextTile> encode_context(const ContextTiles& context, const TileF
     ContextTile& tile = tiles[i];
     const ContextNode& node = context.nodes[i];
     const bool is_leaf = children[i].empty();
-    if (is_leaf && contents[i].bytes.empty()) continue;
+    if (is_leaf && !is_shown[i]) continue;
     tile.error = is_leaf ? 0 : std::max({kLeastError, node.geometric_error, tile.error});
     tile.json["boundingVolume"] = box_json(tile.box);
     tile.json["geometricError"] = tile.error;
     tile.json["refine"] = node.is_added ? "ADD" : "REPLACE";
-    if (!contents[i].bytes.empty()) tile.json["content"]["uri"] = contents[i].path;
+    if (is_shown[i]) tile.json["content"]["uri"] = path_of(i);
     if (!is_leaf) {
       std::reverse(children[i].begin(), children[i].end());
       tile.json["children"] = std::move(children[i]);
     }
-    if (!contents[i].bytes.empty()) files.push_back(std::move(contents[i]));
     if (node.parent < 0) {
       tops.push_back(std::move(tile));
       continue;

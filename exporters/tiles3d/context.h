@@ -45,10 +45,11 @@ struct ContextTile {
   double error = 0;
 };
 
-/// The tiles beside the buildings, in `frame`; their files, tiles/context/<n>.glb, join `files`.
-/// Images are written as they are; positions are rounded to `quantization`. Runs in parallel.
+/// The tiles beside the buildings, in `frame`; `take` gets their files, tiles/context/<n>.glb, as
+/// soon as they are made, from several threads. Images are written as they are; positions are
+/// rounded to `quantization`. Runs in parallel.
 std::vector<ContextTile> encode_context(const ContextTiles& context, const TileFrame& frame,
                                         Compression compression, double quantization,
-                                        std::vector<Encoded>& files);
+                                        const std::function<void(const Encoded&)>& take);
 
 }  // namespace colod

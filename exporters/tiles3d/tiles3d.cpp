@@ -5,7 +5,9 @@
 #include "tiles3d.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <mutex>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -284,6 +286,11 @@ Tile assemble(Scene& scene, std::size_t& next) {
 /// A root that shows nothing itself above the buildings' and the context's tiles.
 Tile beside_context(const Scene& scene, Tile buildings, std::vector<Encoded>& files) {
   const TilesOptions& o = scene.options;
+  std::mutex mutex;
+  const auto keep = [&](const Encoded& file) {
+    const std::lock_guard lock(mutex);
+    files.push_back(file);
+  };
   Tile root;
   Json children = Json::array();
   const auto add = [&](Json json, const Box& box, double error) {
@@ -292,9 +299,12 @@ Tile beside_context(const Scene& scene, Tile buildings, std::vector<Encoded>& fi
     children.push_back(std::move(json));
   };
   add(std::move(buildings.json), buildings.box, buildings.error);
+  const std::function<void(const Encoded&)> take = o.take_context ? o.take_context : keep;
   for (ContextTile& tile :
-       encode_context(*o.context, scene.frames.front(), o.compression, o.quantization, files))
+       encode_context(*o.context, scene.frames.front(), o.compression, o.quantization, take))
     add(std::move(tile.json), tile.box, tile.error);
+  std::sort(files.begin(), files.end(),
+            [](const Encoded& a, const Encoded& b) { return a.path < b.path; });
   root.error = std::max(root.error, o.target_sse * root.box.diagonal());
   root.json["boundingVolume"] = box_json(root.box);
   root.json["geometricError"] = root.error;

@@ -2,6 +2,8 @@
 // measured to.
 #pragma once
 
+#include <functional>
+
 #include "context.h"
 #include "exporters/exporter.h"
 
@@ -14,7 +16,10 @@ struct TilesOptions {
                                ///< target_sse times the gsd of what it shows
   SwitchFacts switching = {};  ///< pixel_error: what a stand-in's deviation may be
   int largest_texture = 4096;  ///< texels a side of a tile's atlas
-  const ContextTiles* context = nullptr;  ///< what stands around; null: nothing
+  const ContextTiles* context = nullptr;                  ///< what stands around; null: nothing
+  std::function<void(const Encoded&)> take_context = {};  ///< its files as soon as they are made,
+                                                          ///< from several threads; empty: they
+                                                          ///< are among the result
   Placement placement = {};  ///< empty: the frame is local and no place on Earth is made up
 };
 

@@ -71,11 +71,14 @@ inline void add_scene_options(CLI::App& app, SceneChoice& scene) {
   app.add_option_function<std::string>(
          "--context",
          [&scene](const std::string& v) {
-           scene.context = v == "none" ? ContextMode::kNone : ContextMode::kAuto;
+           scene.context = v == "none"     ? ContextMode::kNone
+                           : v == "ground" ? ContextMode::kGround
+                                           : ContextMode::kAuto;
          },
          "of a scene: auto (default) writes what is no building into the same tileset, cut out "
-         "where buildings stand and closed below them; none leaves it out")
-      ->check(CLI::IsMember({"auto", "none"}));
+         "where buildings stand and closed below them; ground writes its terrain alone, without "
+         "plants and clutter; none leaves it out")
+      ->check(CLI::IsMember({"auto", "ground", "none"}));
   app.add_option("--source-level", scene.source_level,
                  "of a tileset: take tiles so many levels above the finest ones, default 0")
       ->check(number_between(0, 30));

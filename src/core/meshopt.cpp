@@ -38,6 +38,47 @@ std::vector<std::uint32_t> simplify_indices(const std::vector<float>& positions,
   return kept;
 }
 
+namespace {
+
+/// The library can lock all of a border or nothing. Vertices at which more than two open edges end
+/// are locked, too: each that is to stay gets triangles of its own, which hang on nothing else.
+void hang_on_locked(std::vector<float>& positions, std::vector<std::uint32_t>& indices,
+                    const std::vector<char>& is_locked) {
+  constexpr float kSide = 0.01f;  // as large as not to vanish in a float of kilometres
+  for (std::size_t v = 0; v < is_locked.size(); ++v) {
+    if (!is_locked[v]) continue;
+    for (const float side : {kSide, -kSide}) {
+      const auto first = static_cast<std::uint32_t>(positions.size() / 3);
+      for (const float up : {side, 2 * side})
+        for (std::size_t k = 0; k < 3; ++k)
+          positions.push_back(positions[3 * v + k] + (k == 2 ? up : k == 0 ? side : 0));
+      for (const std::uint32_t i : {static_cast<std::uint32_t>(v), first, first + 1})
+        indices.push_back(i);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> simplify_within(const std::vector<float>& positions,
+                                           const std::vector<std::uint32_t>& indices,
+                                           const std::vector<char>& is_locked, float error) {
+  const std::size_t own = positions.size() / 3;
+  std::vector<float> all = positions;
+  std::vector<std::uint32_t> in = indices;
+  hang_on_locked(all, in, is_locked);
+  const float scale = meshopt_simplifyScale(all.data(), all.size() / 3, 3 * sizeof(float));
+  std::vector<std::uint32_t> out(in.size());
+  out.resize(meshopt_simplify(out.data(), in.data(), in.size(), all.data(), all.size() / 3,
+                              3 * sizeof(float), 0, scale > 0 ? error / scale : 0, 0, nullptr));
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i + 2 < out.size(); i += 3)
+    if (out[i] < own && out[i + 1] < own && out[i + 2] < own)
+      kept.insert(kept.end(), out.begin() + static_cast<std::ptrdiff_t>(i),
+                  out.begin() + static_cast<std::ptrdiff_t>(i + 3));
+  return kept;
+}
+
 void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
                     std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> sorted(indices.size()), remap(vertices);

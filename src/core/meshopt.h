@@ -20,6 +20,13 @@ std::vector<std::uint32_t> simplify_indices(const std::vector<float>& positions,
                                             const std::vector<std::uint32_t>& indices,
                                             std::size_t count);
 
+/// Collapses edges while quadrics tell of no more than `error`, in the unit of `positions`.
+/// `is_locked`, per vertex: it stays where it is, and so does what its triangles touch of a border
+/// there; borders that nothing locks are straightened as surfaces are.
+std::vector<std::uint32_t> simplify_within(const std::vector<float>& positions,
+                                           const std::vector<std::uint32_t>& indices,
+                                           const std::vector<char>& is_locked, float error);
+
 /// mode TRIANGLES. A decoder may turn triangles.
 std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices);
 

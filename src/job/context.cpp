@@ -1,129 +1,256 @@
 // Based on: own work.
-// Differs: a source's own coarse tiles are taken as they are: they were made from the photographs,
-// and what is cut out of them has the same borders on all levels.
+// Differs: a source's own coarse tiles are taken as they are where it has them: they were made from
+// the photographs, and what is cut out of them has the same borders on all levels.
 #include "context.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+
+#include "core/error.h"
+#include "scene/closing.h"
+#include "scene/context_chain.h"
 
 namespace colod {
 
 namespace {
 
-constexpr double kLongest = 1.5;  // metres: the closing ground follows banks as fine as this
-constexpr double kAlways = 16;    // pixels that clients refine at, times what covers one
-constexpr double kBare = 0.7;     // metres over the terrain: what is seen there is ground
+constexpr double kCell = 64;      // metres: ground that the program makes comes in such squares
+constexpr double kServing = 0.5;  // of the finest tiles: so many with coarser ones above them
+constexpr double kFinest = 2048;  // pixels along a square of ground, at most
+constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decoded images
 
-/// Triangles of the plan, halved until their sides are short.
-class Ground {
+using Parted = std::shared_ptr<const PartedScene>;
+using Pieces = std::vector<Territories::Piece>;
+
+std::string cause_of(const Error& e) { return std::string(e.what()).substr(e.item.size() + 2); }
+
+/// By the rule of all tiles: from where on a pixel covers no less than a texel, nor than a share of
+/// how far it is off.
+double error_of(const ChainNode& node, const SceneOutput& output) {
+  return output.target_sse * std::max(node.texel, node.deviation / output.pixel_error);
+}
+
+/// Per node of the tree: whether it lies below the finest ones, and is not asked for.
+std::vector<char> too_fine(const SceneTiles& tiles) {
+  const std::vector<TileNode>& nodes = tiles.tree().nodes;
+  std::vector<char> is_end(nodes.size(), 0), is_below(nodes.size(), 0);
+  for (const int i : tiles.finest()) is_end[static_cast<std::size_t>(i)] = 1;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const auto above = static_cast<std::size_t>(nodes[i].parent);
+    is_below[i] = is_below[above] || (is_end[above] && !nodes[above].is_added);
+  }
+  return is_below;
+}
+
+/// Whether most of what is finest has something coarser that stands for it from afar.
+bool has_own_chain(const SceneTiles& tiles) {
+  const std::vector<TileNode>& nodes = tiles.tree().nodes;
+  std::vector<char> is_served(nodes.size(), 0);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const auto above = static_cast<std::size_t>(nodes[i].parent);
+    is_served[i] = is_served[above] || (!nodes[above].contents.empty() && !nodes[above].is_added);
+  }
+  std::size_t served = 0;
+  for (const int i : tiles.finest()) served += is_served[static_cast<std::size_t>(i)];
+  return static_cast<double>(served) >= kServing * static_cast<double>(tiles.finest().size());
+}
+
+/// What a node shows beside the buildings; what of it cannot be read is among its warnings.
+Source read_node(const PartedScene& scene, std::size_t i, const ReadOptions& options) {
+  const TileNode& node = scene.tiles.tree().nodes[i];
+  std::vector<std::string> problems;
+  std::vector<Source> parts;
+  for (const std::string& content : node.contents) {
+    try {
+      parts.push_back(
+          scene.territories.cut_out(read_tile(node, content, scene.tiles.to_scene(), options), -1));
+    } catch (const Error& e) {
+      problems.push_back(content + ": " + cause_of(e));
+    } catch (const std::exception& e) {  // a library gave up: this tile's problem only
+      problems.push_back(content + ": cannot be read: " + e.what());
+    }
+  }
+  Source whole = joined(parts);
+  whole.warnings = std::move(problems);
+  return whole;
+}
+
+/// A tree of nodes that is put together from several.
+class Nodes {
  public:
-  Ground(const HeightMap& map, const std::vector<float>& terrain) : map_(map), terrain_(terrain) {}
+  explicit Nodes(const SceneOutput& output) : output_(output) {}
 
-  Source close(const std::vector<Territories::Piece>& pieces) {
-    for (const Territories::Piece& piece : pieces) add(piece.corners);
-    color_hidden();
-    return std::move(out_);
+  /// The scene's own tiles on all their levels.
+  void add_tree(const Parted& scene, const ReadOptions& options) {
+    const std::vector<TileNode>& tree = scene->tiles.tree().nodes;
+    const std::vector<char> is_left_out = too_fine(scene->tiles);
+    std::vector<int> number;
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+      number.push_back(static_cast<int>(nodes_.size()));
+      if (is_left_out[i]) continue;
+      const int above = tree[i].parent;
+      nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
+                        tree[i].geometric_error, tree[i].is_added});
+      read_.push_back([scene, options, i] { return read_node(*scene, i, options); });
+    }
+  }
+
+  /// Coarser tiles above leaves; `read` gives what a leaf shows.
+  void add_chain(const std::vector<ChainLeaf>& leaves,
+                 const std::function<Source(std::size_t)>& read) {
+    if (leaves.empty()) return;
+    const auto chain = std::make_shared<const ContextChain>(leaves, kChainImages);
+    std::vector<int> number;  // of a chain's node here
+    for (std::size_t i = 0; i < chain->nodes().size(); ++i) {
+      const ChainNode& node = chain->nodes()[i];
+      number.push_back(static_cast<int>(nodes_.size()));
+      const auto leaf = static_cast<std::size_t>(std::max(node.leaf, 0));
+      if (node.leaf >= 0 && leaves[leaf].texel > 0) continue;  // no tile itself
+      nodes_.push_back({node.parent < 0 ? -1 : number[static_cast<std::size_t>(node.parent)],
+                        error_of(node, output_), false});
+      if (node.leaf >= 0)
+        read_.push_back([read, leaf] { return read(leaf); });
+      else
+        read_.push_back([chain, i] { return chain->read(i); });
+    }
+  }
+
+  std::shared_ptr<const Context> take() {
+    auto context = std::make_shared<Context>();
+    context->nodes = std::move(nodes_);
+    context->read = [read = std::move(read_)](std::size_t i) { return read[i](); };
+    return context;
   }
 
  private:
-  void add(const std::array<Vec2, 3>& first) {
-    std::vector<std::array<Vec2, 3>> open = {first};
-    while (!open.empty()) {
-      const std::array<Vec2, 3> t = open.back();
-      open.pop_back();
-      int longest = 0;
-      for (int k = 1; k < 3; ++k)
-        if (side(t, k) > side(t, longest)) longest = k;
-      if (side(t, longest) <= kLongest) {
-        add_face(t);
-        continue;
-      }
-      const auto a = static_cast<std::size_t>(longest);
-      const Vec2 middle = 0.5 * (t[a] + t[(a + 1) % 3]);
-      open.push_back({t[a], middle, t[(a + 2) % 3]});
-      open.push_back({middle, t[(a + 1) % 3], t[(a + 2) % 3]});
-    }
-  }
-
-  static double side(const std::array<Vec2, 3>& t, int k) {
-    const auto a = static_cast<std::size_t>(k);
-    return (t[a] - t[(a + 1) % 3]).norm();
-  }
-
-  std::size_t cell_at(const Vec2& p) const {
-    const Vec2 at = (p - map_.origin) / map_.cell;
-    return map_.at(std::clamp(static_cast<int>(at.x()), 0, map_.width - 1),
-                   std::clamp(static_cast<int>(at.y()), 0, map_.height - 1));
-  }
-
-  /// The surface where it is bare, else the terrain below what stands there.
-  bool is_bare(std::size_t cell) const { return std::abs(map_.top[cell] - terrain_[cell]) < kBare; }
-
-  void add_face(const std::array<Vec2, 3>& t) {
-    Face face;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t cell = cell_at(t[k]);
-      face[k] = static_cast<int>(out_.mesh.vertices.size());
-      out_.mesh.vertices.emplace_back(t[k].x(), t[k].y(),
-                                      is_bare(cell) ? map_.top[cell] : terrain_[cell]);
-    }
-    out_.mesh.faces.push_back(face);
-    if (map_.color.empty()) return;
-    const std::size_t cell = cell_at((t[0] + t[1] + t[2]) / 3);
-    const Rgb rgb = map_.color[cell];
-    out_.look.colors.push_back({rgb, rgb, rgb});
-    is_hidden_.push_back(!is_bare(cell));
-  }
-
-  /// What nobody has seen looks like the mean of what is bare.
-  void color_hidden() {
-    std::array<double, 3> sum{};
-    double count = 0;
-    for (std::size_t f = 0; f < is_hidden_.size(); ++f) {
-      if (is_hidden_[f]) continue;
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += out_.look.colors[f][0][k];
-      ++count;
-    }
-    Rgb mean = {128, 128, 128};
-    for (std::size_t k = 0; k < 3 && count > 0; ++k)
-      mean[k] = static_cast<std::uint8_t>(sum[k] / count);
-    for (std::size_t f = 0; f < is_hidden_.size(); ++f)
-      if (is_hidden_[f]) out_.look.colors[f] = {mean, mean, mean};
-  }
-
-  const HeightMap& map_;
-  const std::vector<float>& terrain_;
-  Source out_;
-  std::vector<char> is_hidden_;
+  const SceneOutput& output_;
+  std::vector<Context::Node> nodes_;
+  std::vector<std::function<Source()>> read_;
 };
+
+Box box_of(const Pieces& pieces) {
+  Box box;
+  for (const Territories::Piece& piece : pieces)
+    for (const Vec2& p : piece.corners) box.extend(Vec3(p.x(), p.y(), 0));
+  return box;
+}
+
+Vec2 middle_of(const Territories::Piece& piece) {
+  return (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
+}
+
+/// The ground below buildings, square by square.
+void add_closing(const Parted& scene, Nodes& nodes) {
+  std::map<std::array<int, 2>, Pieces> squares;
+  for (const Territories::Piece& piece : scene->territories.pieces()) {
+    const Vec2 at = middle_of(piece) / kCell;
+    squares[{static_cast<int>(std::floor(at.y())), static_cast<int>(std::floor(at.x()))}].push_back(
+        piece);
+  }
+  auto all = std::make_shared<std::vector<Pieces>>();
+  for (auto& [at, pieces] : squares) all->push_back(std::move(pieces));
+  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
+  const auto close = [scene, ground, all](std::size_t i) { return ground->below((*all)[i]); };
+  std::vector<ChainLeaf> leaves;
+  for (std::size_t i = 0; i < all->size(); ++i)
+    leaves.push_back({box_of((*all)[i]), [close, i] { return ChainPart{close(i), {}, {}}; }, 0});
+  nodes.add_chain(leaves, close);
+}
+
+/// Whose tile closes a piece of ground: that over its middle, or the nearest.
+std::size_t tile_below(const SceneTiles& tiles, const Vec2& p) {
+  std::size_t best = 0;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < tiles.count(); ++i) {
+    const Box& box = tiles.box(i);
+    const Vec2 off = (box.min.head<2>() - p).cwiseMax(p - box.max.head<2>()).cwiseMax(0);
+    if (off.norm() < least) least = off.norm(), best = i;
+    if (least == 0) break;
+  }
+  return best;
+}
+
+/// The finest tiles, each with the ground that closes it, and coarser ones of the program's own.
+void add_own_chain(const Parted& scene, Nodes& nodes) {
+  const auto pieces = std::make_shared<std::vector<Pieces>>(scene->tiles.count());
+  for (const Territories::Piece& piece : scene->territories.pieces())
+    (*pieces)[tile_below(scene->tiles, middle_of(piece))].push_back(piece);
+  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
+  const auto show = [scene, ground, pieces](std::size_t i, const Source& tile) {
+    return joined({scene->territories.cut_out(tile, -1), ground->below((*pieces)[i])});
+  };
+  std::vector<ChainLeaf> leaves;
+  for (std::size_t i = 0; i < pieces->size(); ++i) {
+    const auto read = [scene, show, i] {
+      const std::shared_ptr<const Source> tile = scene->tiles.get(i);
+      ChainPart part{show(i, *tile), {}, {}};
+      part.is_joint = marked_as(part.source.mesh, tile->mesh, on_border(tile->mesh));
+      return part;
+    };
+    leaves.push_back({scene->tiles.box(i), read, 0});
+  }
+  nodes.add_chain(leaves, [scene, show](std::size_t i) {
+    Source lost;
+    try {
+      return show(i, *scene->tiles.get(i));
+    } catch (const Error& e) {
+      lost.warnings.push_back(e.what());
+    }
+    return lost;
+  });
+}
+
+/// A square of the map, in cells, both ends included.
+struct Square {
+  int x0, y0, x1, y1;
+};
+
+/// Terrain alone, and what it looks like where it was seen.
+ChainPart bare_part(const PartedScene& scene, const ClosingGround& ground, const Square& s,
+                    const Box& box) {
+  ChainPart part{ground.terrain(s.x0, s.y0, s.x1, s.y1), {}, {}};
+  const Vec2 low = scene.map.middle(s.x0, s.y0), high = scene.map.middle(s.x1, s.y1);
+  for (const Vec3& p : part.source.mesh.vertices)
+    part.is_joint.push_back(p.x() == low.x() || p.y() == low.y() || p.x() == high.x() ||
+                            p.y() == high.y());
+  for (const std::size_t t : scene.tiles.over(box))
+    part.painted.push_back(ground.bare(*scene.tiles.get(t)));
+  return part;
+}
+
+/// No plants, no clutter: the terrain, closed below all that stands on it.
+void add_bare_ground(const Parted& scene, Nodes& nodes) {
+  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
+  const HeightMap& map = scene->map;
+  const int cells = std::max(2, static_cast<int>(kCell / map.cell));
+  std::vector<ChainLeaf> leaves;
+  for (int y = 0; y + 1 < map.height; y += cells)
+    for (int x = 0; x + 1 < map.width; x += cells) {
+      const Square s{x, y, std::min(x + cells, map.width - 1), std::min(y + cells, map.height - 1)};
+      Box box;
+      for (const Vec2& p : {map.middle(s.x0, s.y0), map.middle(s.x1, s.y1)})
+        box.extend(Vec3(p.x(), p.y(), 0));
+      leaves.push_back({box, [scene, ground, s, box] { return bare_part(*scene, *ground, s, box); },
+                        box.size().maxCoeff() / kFinest});
+    }
+  nodes.add_chain(leaves, {});
+}
 
 }  // namespace
 
-std::shared_ptr<const Context> context_of(const std::shared_ptr<const PartedScene>& scene,
-                                          const ReadOptions& options) {
-  auto context = std::make_shared<Context>();
-  for (const TileNode& node : scene->tiles.tree().nodes)
-    context->nodes.push_back({node.parent, node.geometric_error, node.is_added});
-  if (!scene->tiles.tree().is_tileset)  // of one level: it is seen from wherever the whole is
-    context->nodes[0].geometric_error = kAlways * scene->tiles.box().diagonal();
-  const std::size_t closing = context->nodes.size();
-  context->nodes.push_back({-1, 0, false});
-  context->read = [scene, options, closing](std::size_t i) {
-    if (i == closing)
-      return Ground(scene->map, scene->classes.ground).close(scene->territories.pieces());
-    const TileNode& node = scene->tiles.tree().nodes[i];
-    std::vector<Source> parts;
-    for (const std::string& content : node.contents) {
-      try {
-        parts.push_back(scene->territories.cut_out(
-            read_tile(node, content, scene->tiles.to_scene(), options), -1));
-      } catch (const Error&) {
-        continue;  // a finest tile is told of already; of coarser ones the finer are there
-      }
-    }
-    return joined(parts);
-  };
-  return context;
+std::shared_ptr<const Context> context_of(const Parted& scene, ContextMode mode,
+                                          const ReadOptions& options, const SceneOutput& output) {
+  Nodes nodes(output);
+  if (mode == ContextMode::kGround) {
+    add_bare_ground(scene, nodes);
+  } else if (has_own_chain(scene->tiles)) {
+    nodes.add_tree(scene, options);
+    add_closing(scene, nodes);
+  } else {
+    add_own_chain(scene, nodes);
+  }
+  return nodes.take();
 }
 
 }  // namespace colod

@@ -7,9 +7,12 @@
 
 namespace colod {
 
-/// The tree of the scene's own tiles, each without what buildings stand for, and beside it one tile
-/// of ground that closes it below them. The scene has a map.
+/// The tiles of the scene without what buildings stand for, and ground that closes them below: on
+/// the source's own levels where it has some, else with coarser tiles of the program's own.
+/// kGround: the terrain alone. What of a node cannot be read is among its warnings, "file: cause".
+/// The scene has a map.
 std::shared_ptr<const Context> context_of(const std::shared_ptr<const PartedScene>& scene,
-                                          const ReadOptions& options);
+                                          ContextMode mode, const ReadOptions& options,
+                                          const SceneOutput& output);
 
 }  // namespace colod

@@ -62,8 +62,10 @@ Product work(const Job& job, const JobHooks& hooks, const Beside& beside, std::s
 
 Product run_job(const std::vector<std::string>& inputs, const Job& job, const JobHooks& hooks) {
   const Beside beside = read_beside(job, hooks);
-  const Inputs found =
-      open_inputs(inputs, job.read, job.scene, {job.output.crs, job.output.origin}, hooks.tell);
+  const Inputs found = open_inputs(
+      inputs, job.read, job.scene,
+      {job.output.crs, job.output.origin, job.output.target_sse, job.output.switching.pixel_error},
+      hooks.tell);
   return work(job, hooks, beside, found.inventory.building_count(),
               [&](const Hooks& inner, const Prior* prior) {
                 Scene scene = build_scene(found.inventory, found.read, job.options, inner, prior);

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <set>
 #include <sstream>
 
 #include "context.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "scene/looks_like_scene.h"
 
 namespace colod {
 
@@ -17,6 +20,8 @@ namespace {
 
 constexpr double kLeastCovered = 0.1;  // of a footprint's area, by what faces up over it
 constexpr std::size_t kSurveyImages = std::size_t{128} << 20;  // bytes of decoded images
+constexpr std::uintmax_t kLeastScene =
+    100'000;                 // bytes of a file: three houses on terrain take more
 constexpr double kRow = 64;  // metres: buildings are read row by row, so that tiles last
 
 void say(const Tell& tell, Level level, const std::string& text) {
@@ -67,7 +72,7 @@ bool is_over(const Box& a, const Box& b) {
 }
 
 /// Where the scene is: by its own transform, else by options and what lies beside it.
-std::optional<Georeference> place_of(const TileTree& tree, const PlaceOptions& options,
+std::optional<Georeference> place_of(const TileTree& tree, const SceneOutput& options,
                                      bool& is_ecef) {
   std::optional<Georeference> own = georeference_of_tileset(tree.path);
   is_ecef = own.has_value();
@@ -224,8 +229,30 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
+/// Meshes that are taken for buildings since nothing says that they are scenes: a failure of each
+/// that looks like one, though it is built. Small files are not read again for it.
+void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
+  std::vector<std::string> why(inventory.files.size());
+  parallel_for(inventory.files.size(), [&](std::size_t i) {
+    const InputFile& file = inventory.files[i];
+    std::error_code error;
+    if (std::filesystem::file_size(file.path, error) < kLeastScene || error) return;
+    try {
+      for (const Source& s : read_file(file, read))
+        if (why[i].empty()) why[i] = looks_like_scene(s);
+    } catch (const std::exception&) {
+      return;  // whoever reads it for the work tells of it
+    }
+  });
+  for (std::size_t i = 0; i < why.size(); ++i)
+    if (!why[i].empty())
+      inventory.failures.push_back(
+          {inventory.files[i].path, why[i] + "; it is taken for one building: --scene scene takes "
+                                             "it apart, --scene buildings says that it is one"});
+}
+
 Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
-                  const SceneChoice& choice, const PlaceOptions& options, const Tell& tell) {
+                  const SceneChoice& choice, const SceneOutput& options, const Tell& tell) {
   TileTree tree = list_tiles(input, read);
   bool is_ecef = false;
   const std::optional<Georeference> place = place_of(tree, options, is_ecef);
@@ -252,22 +279,24 @@ Inputs open_scene(const std::string& input, const std::string& why, const ReadOp
       PartedScene{std::move(tiles), place, std::move(footprints), std::move(territories),
                   std::move(map), std::move(classes)});
   list_buildings(scene, out);
-  if (choice.context != ContextMode::kNone) out.context = context_of(scene, read);
+  if (choice.context != ContextMode::kNone)
+    out.context = context_of(scene, choice.context, read, options);
   return out;
 }
 
 }  // namespace
 
 Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& read,
-                   const SceneChoice& choice, const PlaceOptions& place, const Tell& tell) {
+                   const SceneChoice& choice, const SceneOutput& output, const Tell& tell) {
   if (const std::string why = reason_to_part(inputs, choice); !why.empty())
-    return open_scene(inputs[0], why, read, choice, place, tell);
+    return open_scene(inputs[0], why, read, choice, output, tell);
   if (!choice.footprints.empty())
     throw Error(Stage::kUsage, "--footprints",
                 "is for scenes, and these inputs are files of single buildings; --scene scene "
                 "takes one for a scene");
   Inputs out;
   out.inventory = take_inventory(inputs, read);
+  if (choice.mode == SceneMode::kAuto) doubt_buildings(read, out.inventory);
   out.read = [files = out.inventory.files, read](std::size_t file) {
     return read_file(files[file], read);
   };

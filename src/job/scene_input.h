@@ -38,14 +38,15 @@ struct Inputs {
   std::string found_footprints;                  ///< as GeoJSON; empty: they were given
 };
 
-/// What --crs and --origin say.
-struct PlaceOptions {
+/// What of the output's options a scene is opened with.
+struct SceneOutput {
   std::string crs, origin;
+  double target_sse = 16, pixel_error = 2;  ///< pixels
 };
 
 /// Tells what an INPUT is taken for, and why. Throws Error{kInput} for inputs that are not there or
 /// a scene without a tile, Error{kUsage} for options that do not go together.
 Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& read,
-                   const SceneChoice& choice, const PlaceOptions& place, const Tell& tell);
+                   const SceneChoice& choice, const SceneOutput& output, const Tell& tell);
 
 }  // namespace colod

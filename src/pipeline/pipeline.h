@@ -150,7 +150,6 @@ struct Scene {
   double coanalysis_seconds = 0;
   double export_seconds = 0;                 ///< wall clock of what is written after the last mesh
   std::string tileset_failure;               ///< why there is none; empty: there is one
-  std::vector<std::string> lost_looks;       ///< of what is no building, one line each
   std::vector<TypeConsistency> consistency;  ///< against a truth, where there is one
   std::map<std::string, Attributes> attributes;  ///< by building's name: of footprints
   std::shared_ptr<const Context> context;  ///< what is no building; null: nothing, or left out

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <stdexcept>
+#include <set>
 
 #include "image/cache.h"
 
@@ -40,10 +39,12 @@ Rgb plain_color(const Appearance& look, std::size_t f) {
 
 class Dresser {
  public:
-  Dresser(Source source, const TextureOptions& options, LostImages& lost)
-      : source_(std::move(source)), options_(options), lost_(lost) {}
+  Dresser(Source source, const TextureOptions& options)
+      : source_(std::move(source)), options_(options) {}
 
-  ContextMesh dress() {
+  /// Images that cannot be worn join `failures`.
+  ContextMesh dress(std::vector<ReadFailure>& failures) {
+    failures_ = &failures;
     const Appearance& look = source_.look;
     for (std::size_t f = 0; f < source_.mesh.faces.size(); ++f) {
       const int m = look.face_material.empty() ? -1 : look.face_material[f];
@@ -60,7 +61,7 @@ class Dresser {
   }
 
  private:
-  /// −1: it cannot be read, or in no format that clients know.
+  /// −1: it cannot be read, or in no format that clients know: the face has a plain colour then.
   int number_of(int image) {
     const auto [known, is_new] = numbers_.try_emplace(image, -1);
     if (!is_new) return known->second;
@@ -69,36 +70,61 @@ class Dresser {
       const std::size_t most = static_cast<std::size_t>(options_.memory * (1 << 20));
       std::string bytes = read_image(place, most);
       const auto format = format_of(bytes);
-      if (!format) throw std::runtime_error("is no JPEG, PNG or WebP");
+      if (!format) throw std::runtime_error("neither JPEG nor PNG nor WebP");
       known->second = static_cast<int>(out_.images.size());
       out_.images.push_back({std::move(bytes), *format});
     } catch (const std::exception& e) {
-      lost_.add("context: texture '" + std::filesystem::path(place.path).filename().string() +
-                "' " + e.what() +
-                ": a plain colour stands for it; --texture none builds without textures");
+      const std::string within =
+          place.length > 0 ? ", image at byte " + std::to_string(place.offset) : "";
+      failures_->push_back({place.path, std::string("its look is lost beside the buildings") +
+                                            within + ": " + e.what() +
+                                            ": --texture none wants none"});
     }
     return known->second;
   }
 
   Source source_;
   const TextureOptions& options_;
-  LostImages& lost_;
   ContextMesh out_;
   std::map<int, int> numbers_;
+  std::vector<ReadFailure>* failures_ = nullptr;
 };
 
 }  // namespace
 
 std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptions& options,
-                                          LostImages& lost) {
+                                          ContextFailures& failures) {
   if (!scene.context) return {};
   ContextTiles tiles;
   for (const Context::Node& n : scene.context->nodes)
     tiles.nodes.push_back({n.parent, n.geometric_error, n.is_added});
-  tiles.mesh = [context = scene.context, options, &lost](std::size_t node) {
-    return Dresser(context->read(node), options, lost).dress();
+  failures.assign(tiles.nodes.size(), {});
+  tiles.mesh = [context = scene.context, options, &failures](std::size_t node) {
+    Source source = context->read(node);
+    for (const std::string& line : source.warnings) {
+      const std::size_t end = std::min(line.find(": "), line.size());
+      failures[node].push_back({line.substr(0, end), line.substr(std::min(end + 2, line.size()))});
+    }
+    return Dresser(std::move(source), options).dress(failures[node]);
   };
   return tiles;
+}
+
+void tell_failures(const ContextFailures& failures, Scene& scene) {
+  if (!scene.context) return;
+  std::vector<char> is_finest(failures.size(), 1);
+  for (const Context::Node& node : scene.context->nodes)
+    if (node.parent >= 0) is_finest[static_cast<std::size_t>(node.parent)] = 0;
+  std::set<std::pair<std::string, std::string>> told;
+  for (const ReadFailure& f : scene.failures) told.insert({f.path, f.message});
+  for (std::size_t i = 0; i < failures.size(); ++i)
+    for (const ReadFailure& f : failures[i]) {
+      if (!told.insert({f.path, f.message}).second) continue;
+      if (is_finest[i] || scene.context->nodes[i].is_added)
+        scene.failures.push_back(f);
+      else
+        scene.warnings.push_back(f.path + ": " + f.message + "; finer tiles stand for it");
+    }
 }
 
 }  // namespace colod

@@ -33,7 +33,6 @@ std::vector<Message> problems_of(const Scene& scene) {
   for (const std::string& w : scene.switching.warnings) all.push_back({Level::kWarning, w});
   if (!scene.tileset_failure.empty())
     all.push_back({Level::kError, "tileset.json is not written: " + scene.tileset_failure});
-  for (const std::string& w : scene.lost_looks) all.push_back({Level::kError, w});
   for (const ReadFailure& f : scene.failures)
     all.push_back({Level::kError, f.path + ": " + f.message});
   for (const Building& b : scene.buildings) add_building(b, all);
@@ -55,8 +54,7 @@ Message summary_of(const Scene& scene, double seconds, const std::string& out) {
 }
 
 int exit_code(const Scene& scene) {
-  std::size_t failed =
-      scene.failures.size() + !scene.tileset_failure.empty() + scene.lost_looks.size();
+  std::size_t failed = scene.failures.size() + !scene.tileset_failure.empty();
   for (const Building& b : scene.buildings) failed += b.has_failed() || b.has_lost();
   if (failed == 0) return 0;
   const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),

@@ -1,6 +1,8 @@
 #include "outputs.h"
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
 
 #include "context.h"
 #include "core/parallel.h"
@@ -118,7 +120,7 @@ void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
     if (pictures && !pictures->empty() && w.options.texture.mode == Texture::kAuto)
       add_looks(w, b, out, *pictures);
   } catch (const std::exception& e) {  // a failure of its looks alone
-    b.lost_looks.push_back(std::string("is written without textures: ") + e.what());
+    b.warnings.push_back(std::string("is written without textures: ") + e.what());
     for (ExportLevel& level : out.levels) level.look = {};
   }
   depot.drop(b);
@@ -149,8 +151,19 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                   const SwitchFacts& facts, const OutputOptions& a, const Take& take,
                   const Tell& tell) {
   std::vector<Encoded> files;
-  LostImages lost;
-  const std::optional<ContextTiles> around = context_tiles(scene, a.texture, lost);
+  ContextFailures failures;
+  std::mutex mutex;
+  std::exception_ptr unwritten;
+  const Take writer = [&](const Encoded& file) {
+    try {
+      take(file);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      unwritten = std::current_exception();
+      throw;
+    }
+  };
+  const std::optional<ContextTiles> around = context_tiles(scene, a.texture, failures);
   try {
     files = encode_tileset(buildings,
                            {.compression = a.compression,
@@ -159,12 +172,14 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .switching = facts,
                             .largest_texture = a.texture.largest,
                             .context = around ? &*around : nullptr,
+                            .take_context = writes(a, "3tz") ? Take{} : writer,
                             .placement = find_placement(scene, a.crs, a.origin, buildings, tell)});
   } catch (const std::exception& e) {
+    if (unwritten) std::rethrow_exception(unwritten);
     scene.tileset_failure = e.what();
     return;
   }
-  scene.lost_looks = lost.lines();
+  tell_failures(failures, scene);
   if (writes(a, "3tz")) take(encode_3tz(files));
   if (writes(a, "3dtiles"))  // tileset.json last: whoever finds it finds the tiles it names
     for (std::size_t i = files.size(); i-- > 0;) take(files[i]);
@@ -178,13 +193,7 @@ SwitchOptions switch_options(const OutputOptions& a) {
   return options;
 }
 
-void check_output(const OutputOptions& a) {
-  if (a.texture.format == ImageFormat::kKtx2 && a.texture.mode == Texture::kAuto &&
-      !can_encode_ktx2())
-    throw Error(
-        Stage::kUsage, "--texture-format",
-        "ktx2 is written by the program basisu (Basis Universal), which is not on the PATH: "
-        "install it, or choose webp");
+void check_place(const OutputOptions& a) {
   if (const auto given = georeference_from_options(a.crs, a.origin))
     place_on_earth(*given, Vec3::Zero());
 }

@@ -214,8 +214,7 @@ Json coanalysis_json(const Scene& scene) {
 
 /// How much is amiss, over all buildings.
 void count_losses(const Scene& scene, Json& totals) {
-  std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0;
-  std::size_t textures = scene.lost_looks.size();
+  std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0, textures = 0;
   for (const Building& b : scene.buildings) {
     failed += !b.failure.empty();
     textures += b.lost_looks.size();
@@ -258,7 +257,6 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["warnings"] = scene.warnings;
-  json["lost_textures"] = scene.lost_looks;
   for (const ClassArea& c : scene.classes)
     json["classes"].push_back({{"name", c.name}, {"area", c.area}});
   json["buildings"] = Json::array();

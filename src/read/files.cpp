@@ -32,8 +32,8 @@ struct Foreign {
 constexpr const char* kByAssimp =
     "is not read: `assimp export IN OUT.glb`, or Blender's import and glTF export, converts it";
 constexpr Foreign kForeign[] = {
-    {".las", "LAS is not read yet: `pdal translate IN.las OUT.ply` converts it"},
-    {".laz", "LAZ is not read yet: `pdal translate IN.laz OUT.ply` converts it"},
+    {".las", "LAS is not read: `pdal translate IN.las OUT.ply` converts it"},
+    {".laz", "LAZ is not read: `pdal translate IN.laz OUT.ply` converts it"},
     {".e57", "E57 is not read: `pdal translate IN.e57 OUT.ply` converts it"},
     {".ifc", "IFC is not read: `IfcConvert IN.ifc OUT.glb` converts it"},
     {".gml",
@@ -53,6 +53,11 @@ constexpr Foreign kForeign[] = {
     {".skp", "SketchUp's own file is not read: its OBJ or glTF export converts it"},
     {".3dm", "Rhino's own file is not read: its OBJ or glTF export converts it"},
     {".zip", "an archive is not read: unpack it"},
+    {".3tz", "an archive is not read: `unzip IN.3tz -d DIR` unpacks it, then DIR is the input"},
+    {".osgb", "OSGB is not read: `osgconv IN.osgb OUT.obj` converts a tile"},
+    {".i3dm", "i3dm (instances of models) is not read"},
+    {".pnts", "pnts (points) is not read: `pdal translate` makes PLY of the cloud it came from"},
+    {".cmpt", "cmpt (a composite) is not read"},
 };
 
 template <std::size_t N>

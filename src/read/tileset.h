@@ -39,8 +39,8 @@ std::string safe_name(const std::string& name);
 bool is_tiled_scene(const std::string& input, std::string& why);
 
 /// 3D Tiles 1.0 and 1.1: external tilesets, transforms, content.url and content.uri, contents,
-/// `content: null`, asset.gltfUpAxis. What lies outside the folder of the tileset that is named,
-/// what leads back to itself and implicit tiling are failures of their own. Of another folder, or a
+/// `content: null`, implicit tiling, asset.gltfUpAxis. What lies outside the folder of the tileset
+/// that is named, and what leads back to itself, are failures of their own. Of another folder, or a
 /// mesh, each file is a tile. Throws Error{kInput} where there is nothing to read.
 TileTree list_tiles(const std::string& input, const ReadOptions& options = {});
 

@@ -106,3 +106,37 @@ constexpr double kLeastPart = 8;   // m²
 constexpr double kLeastHole = 12;  // m², of a courtyard
 
 }  // namespace colod::parameters::outlines
+
+namespace colod::parameters::context {
+
+constexpr std::size_t kMostChildren = 4;
+constexpr double kLargestPicture = 2048;    // pixels a side: 12 MiB while it is drawn, times cells
+constexpr int kSmallPicture = 512;          // pixels a side: a whole place, seen from afar
+constexpr int kCellsAPixel = 2;             // along each side: thin things do not flicker
+constexpr int kQuality = 85;                // of JPEG, as bakes have it
+constexpr double kLeastTexel = 0.01;        // metres: what a drone sees
+constexpr std::size_t kMostFaces = 60'000;  // of a coarser tile: what a client draws at once
+constexpr std::size_t kFewFaces = 20'000;   // … of the coarsest
+constexpr int kMostRelaxed = 8;             // times the error is doubled for it
+constexpr int kMostAbove = 12;              // levels above the one that holds all
+constexpr std::size_t kMostMeasured = 100'000;  // vertices that a tile's distance is measured at
+
+}  // namespace colod::parameters::context
+
+namespace colod::parameters::closing {
+
+constexpr double kLongest = 1.5;  // metres: it follows banks as fine as this
+constexpr double kBare = 0.7;     // metres over the terrain: what is seen there is ground
+
+}  // namespace colod::parameters::closing
+
+namespace colod::parameters::whole_place {
+
+constexpr double kMostCells = 4e6;
+constexpr double kLeastSide = 50;     // metres of the plan: a plot is narrower, or holds one house
+constexpr double kLeastGround = 0.3;  // of the plan
+constexpr double kLeastHouse = 30;    // m²: a garage is no second building
+constexpr int kLeastHouses = 3;       // that stand apart: two may be a house and its barn
+constexpr int kReach = 5;             // cells: 2 m between roofs is no gap
+
+}  // namespace colod::parameters::whole_place

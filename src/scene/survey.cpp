@@ -164,6 +164,11 @@ void lay(const Patch& patch, HeightMap& map) {
 
 }  // namespace
 
+void draw_from_above(const Source& source, const ImageCache& images, HeightMap& map) {
+  if (source.mesh.faces.empty()) return;
+  lay(look_at(source, bounding_box(source.mesh.vertices), map, images), map);
+}
+
 HeightMap survey(const SceneTiles& tiles, std::size_t image_memory) {
   HeightMap map;
   const Box& box = tiles.box();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "image/cache.h"
 #include "tiles.h"
 
 namespace colod {
@@ -20,6 +21,10 @@ struct HeightMap {
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   Vec2 middle(int x, int y) const { return origin + cell * Vec2(x + 0.5, y + 0.5); }
 };
+
+/// Draws a mesh into a map whose grid stands and whose arrays are as long as it: what is higher
+/// than what is there shows. What has no look is grey.
+void draw_from_above(const Source& source, const ImageCache& images, HeightMap& map);
 
 /// Reads every tile once, in parallel. Cells are larger where the scene is so large that its map
 /// would take more than 64 million of them: 16 bytes a cell. `image_memory`: bytes that decoded

@@ -79,6 +79,7 @@ struct SceneTiles::Impl {
   Matrix to_scene;
   ReadOptions options;
   std::vector<Tile> tiles;
+  std::vector<int> finest;
   Box box;
   std::size_t faces = 0;
   std::vector<ReadFailure> failures;
@@ -100,7 +101,8 @@ struct SceneTiles::Impl {
 };
 
 void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
-  for (const int node : finest_nodes(tree, coarser))
+  finest = finest_nodes(tree, coarser);
+  for (const int node : finest)
     for (const std::string& content : tree.nodes[static_cast<std::size_t>(node)].contents)
       tiles.push_back({node, content, {}});
   std::vector<Facts> facts(tiles.size());
@@ -201,6 +203,7 @@ std::size_t SceneTiles::count() const { return impl_->tiles.size(); }
 const Box& SceneTiles::box(std::size_t tile) const { return impl_->tiles[tile].box; }
 const Box& SceneTiles::box() const { return impl_->box; }
 const TileTree& SceneTiles::tree() const { return impl_->tree; }
+const std::vector<int>& SceneTiles::finest() const { return impl_->finest; }
 const Matrix& SceneTiles::to_scene() const { return impl_->to_scene; }
 std::size_t SceneTiles::faces() const { return impl_->faces; }
 const std::vector<ReadFailure>& SceneTiles::failures() const { return impl_->failures; }

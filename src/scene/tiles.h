@@ -32,6 +32,8 @@ class SceneTiles {
   std::vector<std::size_t> over(const Box& area) const;
 
   const TileTree& tree() const;
+  /// Of the tree: the nodes whose tiles these are, rising.
+  const std::vector<int>& finest() const;
   const Eigen::Matrix4d& to_scene() const;  ///< turned as it was found to be
   std::size_t faces() const;
   const std::vector<ReadFailure>& failures() const;  ///< of the tree, and of tiles

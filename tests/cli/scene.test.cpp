@@ -1,7 +1,9 @@
 // Whole scenes through the program: footprints in, buildings out, at the source's place.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "place/place.h"
@@ -35,7 +37,9 @@ Run build(const TempFolder& folder, const std::string& rest) {
 /// in four tiles.
 const std::vector<Box> kRow = {Box{{12, 14, 0}, {20, 24, 6}}, Box{{20, 14, 0}, {28, 24, 9}}};
 
-std::string write_row(const TempFolder& folder, const std::string& root_members = "") {
+/// The finest tiles stand below `coarse`, one below another.
+std::string write_row(const TempFolder& folder, const std::string& root_members = "",
+                      const std::vector<std::string>& coarse = {}) {
   const Mesh whole = terrain_with_boxes(40, 1, kRow);
   std::string children;
   for (int t = 0; t < 4; ++t) {
@@ -52,6 +56,8 @@ std::string write_row(const TempFolder& folder, const std::string& root_members 
     folder.write(name, b3dm_of(glb_of(y_up(part))));
     children += (t ? "," : "") + tile_of(name);
   }
+  for (const std::string& name : coarse)
+    children = tile_of(name, R"(,"refine":"REPLACE","children":[)" + children + "]", 1);
   return folder.write("tileset.json",
                       tileset_of(tile_of("", root_members + R"(,"children":[)" + children + "]")));
 }
@@ -201,5 +207,190 @@ TEST_CASE("stages make of a scene the files that build makes") {
   for (const char* file : {"tileset.json", "buildings/left.glb", "buildings/right.glb"}) {
     INFO(file);
     CHECK(slurp(folder.path / "out" / file) == slurp(folder.path / "out2" / file));
+  }
+}
+
+TEST_CASE("a coarse tile that is broken or missing is told of once, and costs only itself") {
+  const TempFolder folder;
+  const std::size_t broken = GENERATE(1, 3);
+  std::vector<std::string> coarse = {"whole.b3dm"};
+  folder.write("whole.b3dm", b3dm_of(glb_of(y_up(terrain_with_boxes(40, 4, kRow)))));
+  for (std::size_t i = 0; i < broken; ++i) {
+    coarse.push_back("broken" + std::to_string(i) + ".b3dm");
+    folder.write(coarse.back(), "b3dm, but not for long");
+  }
+  coarse.push_back("missing.b3dm");
+  write_row(folder, "", coarse);
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  const Run run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.log);
+  CHECK(run.code == 0);  // nothing of the place is lost
+  for (std::size_t i = 1; i < coarse.size(); ++i) {
+    const std::size_t first = run.log.find(coarse[i]);
+    REQUIRE(first != std::string::npos);
+    CHECK(run.log.find(coarse[i], first + 1) == std::string::npos);
+    CHECK(report(folder)["warnings"].dump().find(coarse[i]) != std::string::npos);
+  }
+  CHECK(run.log.find("whole.b3dm") == std::string::npos);
+}
+
+TEST_CASE("an image that is lost beside the buildings is told of and makes the exit code 1") {
+  const TempFolder folder;
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  folder.write("wall.jpg", "no image");
+  const Mesh whole = terrain_with_boxes(40, 1, kRow);
+  std::string text = "mtllib scene.mtl\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl wall\n";
+  for (const Vec3& p : whole.vertices)
+    text += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " +
+            std::to_string(p.z()) + "\n";
+  for (const Face& f : whole.faces) {
+    text += "f";
+    for (int k = 0; k < 3; ++k)
+      text +=
+          " " + std::to_string(f[static_cast<std::size_t>(k)] + 1) + "/" + std::to_string(k + 1);
+    text += "\n";
+  }
+  folder.write("scene.mtl", "newmtl wall\nmap_Kd wall.jpg\n");
+  const std::string scene = folder.write("scene.obj", text);
+  const Run run = build(folder, scene + " --scene scene --footprints " + plans);
+  INFO(run.log);
+  CHECK(run.code == 1);
+  CHECK_THAT(run.log, Contains("wall.jpg") && Contains("its look is lost beside the buildings"));
+  CHECK(report(folder)["failures"].size() == 1);
+}
+
+TEST_CASE("of a tileset's coarser level what is finer is left out of the context, too") {
+  const TempFolder folder;
+  folder.write("whole.b3dm", b3dm_of(glb_of(y_up(terrain_with_boxes(40, 2, kRow)))));
+  write_row(folder, "", {"whole.b3dm"});
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  for (const int level : {0, 1}) {
+    const Run run = build(folder, folder.path.string() + " --source-level " +
+                                      std::to_string(level) + " --footprints " + plans);
+    INFO(run.log);
+    CHECK(run.code == 0);
+    std::size_t tiles = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(folder.path / "out" / "tiles" / "context"))
+      tiles += entry.is_regular_file();
+    CHECK(tiles == (level == 0 ? 7 : 3));  // with the ground below the houses on two levels
+    std::filesystem::remove_all(folder.path / "out");
+  }
+}
+
+namespace {
+
+/// Level ground of `side` metres with the row, as an OBJ tile each 20 m.
+void write_tiles(const TempFolder& folder, int side) {
+  const Mesh whole = terrain_with_boxes(side, 1, kRow);
+  std::map<std::pair<int, int>, Mesh> tiles;
+  for (const Face& f : whole.faces) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : f) middle += whole.vertices[static_cast<std::size_t>(v)] / 3;
+    Mesh& tile = tiles[{static_cast<int>(middle.x() / 20), static_cast<int>(middle.y() / 20)}];
+    tile.vertices = whole.vertices;
+    tile.faces.push_back(f);
+  }
+  for (const auto& [at, tile] : tiles) {
+    const std::string name = "Tile_" + std::to_string(at.first) + "_" + std::to_string(at.second);
+    std::filesystem::create_directories(folder.path / "Data" / name);
+    folder.write("Data/" + name + "/" + name + ".obj", obj_text(tile));
+  }
+}
+
+/// Errors fall from each tile to its children; returns how many tiles show something.
+int count_tiles(const Json& tile, double above) {
+  CHECK(tile["geometricError"].get<double>() < above);
+  int count = tile.contains("content") &&
+              tile["content"]["uri"].get<std::string>().starts_with("tiles/context/");
+  if (tile.contains("children"))
+    for (const Json& child : tile["children"]) count += count_tiles(child, tile["geometricError"]);
+  return count;
+}
+
+int context_tiles(const TempFolder& folder) {
+  return count_tiles(Json::parse(slurp(folder.path / "out" / "tileset.json"))["root"], 1e9);
+}
+
+}  // namespace
+
+TEST_CASE("a folder of tiles gets coarser ones of its own, in one chain") {
+  const TempFolder folder;
+  const int side = GENERATE(40, 60, 100);
+  write_tiles(folder, side);
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  const Run run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.log);
+  CHECK(run.code == 0);
+  const int tiles = side / 20;
+  CHECK(context_tiles(folder) > tiles * tiles);
+  const std::string check = std::string(COLOD_BINARY) + " info --check " +
+                            (folder.path / "out").string() + " > /dev/null 2>&1";
+  CHECK(std::system(check.c_str()) == 0);
+}
+
+TEST_CASE("of a scene its ground alone, in the same bytes with one thread and with several") {
+  const TempFolder folder;
+  write_tiles(folder, 60);
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  const std::string rest = folder.path.string() + " --context ground --footprints " + plans;
+  std::map<std::string, std::string> files[2];
+  for (const int i : {0, 1}) {
+    const Run run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
+    INFO(run.log);
+    CHECK(run.code == 0);
+    CHECK(context_tiles(folder) >= 2);
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(folder.path / "out" / "tiles"))
+      if (entry.is_regular_file()) files[i][entry.path().string()] = slurp(entry.path());
+    std::filesystem::remove_all(folder.path / "out");
+  }
+  CHECK(files[0] == files[1]);
+}
+
+TEST_CASE("a place that is given as one mesh is told of, and built as one building all the same") {
+  const TempFolder folder;
+  std::vector<Box> houses = kRow;
+  houses.push_back({{45, 14, 0}, {55, 24, 6}});
+  houses.push_back({{45, 45, 0}, {55, 55, 7}});
+  const bool is_place = GENERATE(true, false);
+  Mesh place = terrain_with_boxes(70, 1, is_place ? houses : kRow);
+  for (Vec3& p : place.vertices)  // as what was measured: nothing quite level or upright
+    p += Vec3(0.01 * p.z(), 0.013 * p.z(), 0.02 * p.x() + 0.1 * std::sin(p.y() / 5));
+  const std::string mesh = folder.write("place.obj", obj_text(place));
+  const Run run = build(folder, mesh);
+  INFO(run.log);
+  CHECK((run.log.find("looks like a scene: 3 buildings") != std::string::npos) == is_place);
+  CHECK((run.code == 1) == is_place);
+  const Run told = build(folder, mesh + " --scene buildings");
+  INFO(told.log);
+  CHECK(told.log.find("looks like a scene") == std::string::npos);
+}
+
+TEST_CASE("kill -9 during any stage of a scene: the same command goes on, the bytes are the same") {
+  const TempFolder folder;
+  write_row(folder);
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  const std::string colod = COLOD_BINARY, f = folder.path.string();
+  const auto stages = [&](const std::string& name) {
+    const std::string file = f + "/" + name + ".colod";
+    return std::vector<std::string>{
+        "segment " + f + " --footprints " + plans + " --ns 24 --nr 24 -o " + file,
+        "analyze " + file, "mesh " + file,
+        "export " + file + " --no-report-html -o " + f + "/" + name};
+  };
+  const auto run = [&](const std::string& before, const std::string& stage) {
+    return std::system((before + colod + " " + stage + " > " + f + "/log 2>&1").c_str());
+  };
+  for (const std::string& stage : stages("whole")) REQUIRE(run("", stage) == 0);
+  for (const std::string& stage : stages("killed")) {
+    for (int ms = 10; ms < 3000; ms += ms / 2 + 10)  // sooner and later, and at last not at all
+      run("timeout -s KILL " + std::to_string(ms / 1000.0) + " ", stage);
+    INFO(stage << slurp(folder.path / "log"));
+    REQUIRE(run("", stage) == 0);
+  }
+  for (const char* file : {"tileset.json", "buildings/left.glb", "buildings/right.glb"}) {
+    INFO(file);
+    CHECK(slurp(folder.path / "whole" / file) == slurp(folder.path / "killed" / file));
   }
 }

@@ -243,3 +243,111 @@ TEST_CASE("a folder of OBJ tiles is a tree of them") {
   CHECK(finest_nodes(tree).size() == 2);
   check_box(whole(tree), {0, 0, 0}, {8, 2, 3});
 }
+
+namespace {
+
+std::string binary_subtree(std::string json, std::string bits) {
+  while (json.size() % 8 != 0) json += ' ';
+  while (bits.size() % 8 != 0) bits += '\0';
+  std::string out = "subt";
+  put(out, std::uint32_t{1}, false);
+  put(out, std::uint64_t{json.size()}, false);
+  put(out, std::uint64_t{bits.size()}, false);
+  return out + json + bits;
+}
+
+/// A tree of `levels` over one place where all tiles have contents but those at the upper right,
+/// with subtrees of `subtree_levels`; tile x, y of a level is a box moved by 10 x, 10 y.
+std::string write_implicit(const TempFolder& folder, int branches, int subtree_levels, int levels,
+                           bool is_binary) {
+  std::filesystem::create_directories(folder.path / "s");
+  std::filesystem::create_directories(folder.path / "c");
+  const bool is_octree = branches == 8;
+  for (int level = 0; level < levels; ++level)
+    for (int x = 0; x < 1 << level; ++x)
+      for (int y = 0; y < 1 << level; ++y)
+        for (int z = 0; z < (is_octree ? 1 << level : 1); ++z) {
+          const std::string name = std::to_string(level) + "_" + std::to_string(x) + "_" +
+                                   std::to_string(y) + "_" + std::to_string(z);
+          folder.write("c/" + name + ".b3dm",
+                       b3dm_of(glb_of(y_up(moved(kBox, Vec3(10 * x, 10 * y, 10 * z))))));
+          if (level % subtree_levels != 0) continue;
+          const bool has_more = level + subtree_levels < levels;
+          const std::string more = has_more ? "1" : "0";
+          // 64 bytes of ones are more than the tiles of any subtree here.
+          const std::string json =
+              is_binary
+                  ? R"({"buffers":[{"byteLength":64}],"bufferViews":[{"buffer":0,"byteLength":64}],)"
+                    R"("tileAvailability":{"bitstream":0},"contentAvailability":[{"bitstream":0}],)"
+                    R"("childSubtreeAvailability":{"constant":)" +
+                        more + "}}"
+                  : R"({"tileAvailability":{"constant":1},"contentAvailability":[{"constant":1}],)"
+                    R"("childSubtreeAvailability":{"constant":)" +
+                        more + "}}";
+          folder.write("s/" + name + ".subtree",
+                       is_binary ? binary_subtree(json, std::string(64, '\xFF')) : json);
+        }
+  const std::string z = is_octree ? "{z}" : "0";
+  return folder.write(
+      "tileset.json",
+      tileset_of(tile_of("c/{level}_{x}_{y}_" + z + ".b3dm",
+                         R"(,"refine":"REPLACE","implicitTiling":{"subdivisionScheme":")" +
+                             std::string(is_octree ? "OCTREE" : "QUADTREE") +
+                             R"(","subtreeLevels":)" + std::to_string(subtree_levels) +
+                             R"(,"availableLevels":)" + std::to_string(levels) +
+                             R"(,"subtrees":{"uri":"s/{level}_{x}_{y}_)" + z + R"(.subtree"}})",
+                         16)));
+}
+
+}  // namespace
+
+TEST_CASE("implicit tiles are those of their subtrees, JSON or binary") {
+  const int branches = GENERATE(4, 8);
+  const int subtree_levels = GENERATE(1, 2), levels = GENERATE(1, 2, 3);
+  const bool is_binary = GENERATE(true, false);
+  const TempFolder folder;
+  const TileTree tree =
+      list_tiles(write_implicit(folder, branches, subtree_levels, levels, is_binary));
+  CHECK(tree.failures.empty());
+  std::size_t expected = 0, finest = 1;
+  for (int l = 0; l < levels; ++l) expected += finest, finest *= static_cast<std::size_t>(branches);
+  CHECK(tree.nodes.size() == expected);
+  CHECK(finest_nodes(tree).size() == finest / static_cast<std::size_t>(branches));
+  CHECK(tree.nodes.back().geometric_error == Approx(16.0 / (1 << (levels - 1))));
+  const double far = 10.0 * ((1 << (levels - 1)) - 1);
+  check_box(whole(tree), {0, 0, 0}, {far + 4, far + 2, (branches == 8 ? far : 0) + 3});
+}
+
+TEST_CASE("a subtree that is missing, cut off or out of the folder costs itself only") {
+  const TempFolder folder;
+  const std::string path = write_implicit(folder, 4, 1, 2, true);
+  const std::string fault = GENERATE("missing", "cut", "short", "no JSON");
+  const std::string name = "s/1_1_0_0.subtree";
+  std::filesystem::remove(folder.path / name);
+  if (fault == "cut") folder.write(name, "subt\1\0\0\0");
+  if (fault == "no JSON") folder.write(name, "nothing");
+  if (fault == "short")
+    folder.write(name, binary_subtree(R"({"buffers":[{"byteLength":8}],"bufferViews":[{"buffer":0,)"
+                                      R"("byteLength":99}],"tileAvailability":{"bitstream":0}})",
+                                      "12345678"));
+  const TileTree tree = list_tiles(path);
+  INFO(fault);
+  CHECK(tree.failures.size() == 1);
+  CHECK(finest_nodes(tree).size() == 3);
+}
+
+TEST_CASE("implicit tiling without sense is said") {
+  const TempFolder folder;
+  const std::string levels = GENERATE("0", "-1", "40", "\"a\"", "20");
+  folder.write("a.b3dm", b3dm_of(glb_of(y_up(kBox))));
+  const TileTree tree = list_tiles(folder.write(
+      "tileset.json",
+      tileset_of(tile_of(
+          "", R"(,"refine":"ADD","children":[)" + tile_of("a.b3dm") + "," +
+                  tile_of("x", R"(,"implicitTiling":{"subdivisionScheme":"QUADTREE",)"
+                               R"("subtreeLevels":)" +
+                                   levels + R"(,"availableLevels":30,"subtrees":{"uri":"s"}})") +
+                  "]"))));
+  REQUIRE(tree.failures.size() == 1);
+  CHECK_THAT(tree.failures[0].message, Contains("implicit tiling"));
+}

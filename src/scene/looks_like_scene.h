@@ -1,0 +1,14 @@
+// Whether what is given as a building is a whole place.
+#pragma once
+
+#include <string>
+
+#include "core/geometry.h"
+
+namespace colod {
+
+/// What tells that a mesh is a place with terrain and several buildings, for a message; empty: it
+/// is a building, drawn, too small to tell, or no mesh. O(cells of its plan).
+std::string looks_like_scene(const Source& source);
+
+}  // namespace colod
