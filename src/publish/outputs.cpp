@@ -120,7 +120,7 @@ void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
     if (pictures && !pictures->empty() && w.options.texture.mode == Texture::kAuto)
       add_looks(w, b, out, *pictures);
   } catch (const std::exception& e) {  // a failure of its looks alone
-    b.warnings.push_back(std::string("is written without textures: ") + e.what());
+    b.lost_looks.push_back(std::string("is written without textures: ") + e.what());
     for (ExportLevel& level : out.levels) level.look = {};
   }
   depot.drop(b);
@@ -193,7 +193,13 @@ SwitchOptions switch_options(const OutputOptions& a) {
   return options;
 }
 
-void check_place(const OutputOptions& a) {
+void check_output(const OutputOptions& a) {
+  if (a.texture.format == ImageFormat::kKtx2 && a.texture.mode == Texture::kAuto &&
+      !can_encode_ktx2())
+    throw Error(
+        Stage::kUsage, "--texture-format",
+        "ktx2 is written by the program basisu (Basis Universal), which is not on the PATH: "
+        "install it, or choose webp");
   if (const auto given = georeference_from_options(a.crs, a.origin))
     place_on_earth(*given, Vec3::Zero());
 }
