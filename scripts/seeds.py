@@ -24,7 +24,8 @@ def make_seeds(colod, folder):
     with open(os.path.join(folder, 'house.obj'), 'w', encoding='ascii') as file:
         file.write(HOUSE)
     small = ['--ns', '12', '--nr', '8', '--quiet', '--no-report-html']
-    seeds = {kind: [] for kind in ['obj', 'ply', 'off', 'stl', 'gltf', 'glb', 'xyz', 'pwn', 'check', 'tileset', 'scene', 'sidecar', 'options']}
+    seeds = {kind: [] for kind in ['obj', 'ply', 'off', 'stl', 'gltf', 'glb', 'xyz', 'pwn', 'b3dm', 'check', 'tileset', 'place', 'scene', 'sidecar',
+                                  'options']}
     for compression in ['none', 'draco', 'meshopt']:
         run('build', 'house.obj', '-o', compression, '--compression', compression, '--format', 'glb,3dtiles,ply', *small)
         glb = read(compression + '/buildings/house.glb')
@@ -59,6 +60,20 @@ def make_seeds(colod, folder):
     document = json.loads(glb[20:20 + length])
     document['buffers'][0]['uri'] = 'x.bin'
     seeds['gltf'] = [('x.gltf', ['info', 'x.gltf'], json.dumps(document).encode(), {'x.bin': glb[28 + length:]})]
+    features, batch = b'{"BATCH_LENGTH":0}'.ljust(24), b'{"id":[]}'.ljust(16)
+    b3dm = struct.pack('<4s6I', b'b3dm', 1, 28 + 40 + len(glb), len(features), 0, len(batch), 0) + features + batch + glb
+    seeds['b3dm'] = [('x.b3dm', ['info', 'x.b3dm'], b3dm, {})]
+    region = {'box': [4, 3, 3, 6, 0, 0, 0, 6, 0, 0, 0, 6]}
+    leaf = {'boundingVolume': region, 'geometricError': 0, 'content': {'uri': 'x.b3dm'}}
+    root = {'boundingVolume': region, 'geometricError': 5, 'refine': 'REPLACE', 'children': [leaf], 'transform': [
+        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}
+    place = json.dumps({'asset': {'version': '1.0', 'gltfUpAxis': 'Y'}, 'geometricError': 50, 'root': root}).encode()
+    ring = [[-1, -1], [9, -1], [9, 7], [-1, 7], [-1, -1]]
+    plan = json.dumps({'type': 'FeatureCollection', 'features': [
+        {'type': 'Feature', 'properties': {'id': 'a'}, 'geometry': {'type': 'Polygon', 'coordinates': [ring]}}]}).encode()
+    whole = {'tileset.json': place, 'x.b3dm': b3dm, 'plan.geojson': plan}
+    read_place = ['build', 'tileset.json', '-o', 'out', '--scene', 'scene', '--footprints', 'plan.geojson', *small]
+    seeds['place'] = [(name, read_place, data, {n: d for n, d in whole.items() if n != name}) for name, data in whole.items()]
     run('segment', 'house.obj', '-o', 'house.colod', '--ns', '12', '--nr', '8', '--quiet')
     run('analyze', 'house.colod')
     run('mesh', 'house.colod', '--quiet')

@@ -15,7 +15,7 @@
 namespace {
 
 constexpr std::array kSuffixes{".obj", ".ply", ".off", ".stl", ".gltf",
-                               ".glb", ".xyz", ".pwn", ".csv"};
+                               ".glb", ".xyz", ".pwn", ".csv", ".b3dm"};
 
 void check(const colod::Source& source) {
   const auto count = static_cast<int>(source.mesh.vertices.size());
