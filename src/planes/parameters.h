@@ -37,17 +37,11 @@ constexpr double kLeastAreaRough = 0.25;
 constexpr std::size_t kMostPlanes = 4000;
 constexpr double kSmoothedNoise =
     0.005;  // metres: below, normals need no smoothing; kClean ends at 4.3 mm
-constexpr double kFootBeside = 1;    // metres that a foot's points may be out of the box in plan
-constexpr double kFootHeight = 0.5;  // metres of height that these have together:
-constexpr std::size_t kFootPoints = 4;
 constexpr double kRefitGrowth = 1.3;
 constexpr double kMergeAngleCosine = 0.9781;  // 12°
 constexpr double kMergeRms = 0.6;             // of the growing distance
 constexpr double kOppositeRms = 0.006;        // metres: both sides of one sheet …
 constexpr double kSheetShare = 0.5;           // … that lie over each other: of the smaller's area
-constexpr double kCrossedRms = 0.75;          // of the growing distance: one that a larger crosses,
-constexpr double kCentred = 0.15;             // of its RMS: its mean distance from that,
-constexpr double kCrossedArea = 0.25;         // of the larger one's area
 constexpr double kUpright = 0.17;             // sine of what may be turned level or upright
 constexpr double kMostTurn =
     10 * (M_PI / 180);                      // of a narrow strip, which hardly knows its direction

@@ -46,24 +46,6 @@ Box used_box(const Items& items) {
   return box;
 }
 
-/// The foot of a cloud: a few points low on its walls are too few for a component, but they say
-/// where the walls end. Single points below are noise.
-void lower_to_foot(const Items& items, Box& box) {
-  std::vector<double> heights;
-  for (int i = 0; i < items.size(); ++i) {
-    const Vec3& p = items.source->cloud.points[i];
-    const Vec3 beyond = (box.min - p).cwiseMax(p - box.max);  // > 0: out of the box
-    if (p.allFinite() && p.z() < box.min.z() && beyond.head<2>().maxCoeff() < kFootBeside)
-      heights.push_back(p.z());
-  }
-  std::sort(heights.begin(), heights.end());
-  for (std::size_t k = 0; k + kFootPoints <= heights.size(); ++k)
-    if (heights[k + kFootPoints - 1] - heights[k] < kFootHeight) {
-      box.min.z() = heights[k];
-      return;
-    }
-}
-
 double growing_distance(double noise, const Box& box, const PlaneOptions& options) {
   const double most =
       std::min({kMostDistance, options.distance, kMostDistanceShare * box.diagonal()});
@@ -241,7 +223,6 @@ Planes detect_planes(const Source& source, const PlaneOptions& options) {
       result.warnings.push_back("turned " + std::to_string(flipped) + " planes outward");
   sort_planes(result.planes);
   result.box = used_box(items);
-  if (rules.has(Rule::kFoot) && !items.is_mesh()) lower_to_foot(items, result.box);
   result.plane_of_item.assign(items.size(), -1);
   for (int i = 0; i < items.size(); ++i)
     if (items.is_floater[i]) result.plane_of_item[i] = kFloater;

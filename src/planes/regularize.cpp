@@ -40,17 +40,6 @@ Region joined(const Region& a, const Region& b) {
   return r;
 }
 
-/// Noise tilts a part of a wall: what lies on both sides of a much larger region's plane alike may
-/// be farther from it than what is beside it, such as a recess or a slope of its own. RMS over the
-/// limit; infinite when it lies otherwise.
-double crossing_cost(const Region& large, const Region& small, double distance) {
-  const double rms = small.moments.rms(large.normal, large.offset);
-  const double mean = large.normal.dot(small.moments.mean()) - large.offset;
-  return std::abs(mean) <= kCentred * rms && small.area <= kCrossedArea * large.area
-             ? rms / (kCrossedRms * distance)
-             : std::numeric_limits<double>::infinity();
-}
-
 /// Two regions that look opposite ways are sides of one sheet when they lie over each other. What
 /// points of a cloud look away from is not known so well: there they always are.
 bool is_sheet(const Items& items, const Region& a, const Region& b) {
@@ -86,11 +75,8 @@ double merge_cost(const Items& items, const Region& a, const Region& b, double d
   const Vec3 n = both.fit(a.area >= b.area ? a.normal : b.normal);
   const double d = n.dot(both.mean());
   const double cost = std::max(a.moments.rms(n, d), b.moments.rms(n, d)) / limit;
-  if (along < 0)
-    return cost <= 1 && (!rules.has(Rule::kSheetSides) || is_sheet(items, a, b)) ? cost : none;
-  if (!rules.has(Rule::kCrossing)) return cost;
-  return std::min(cost,
-                  a.area >= b.area ? crossing_cost(a, b, distance) : crossing_cost(b, a, distance));
+  if (along > 0) return cost;
+  return cost <= 1 && (!rules.has(Rule::kSheetSides) || is_sheet(items, a, b)) ? cost : none;
 }
 
 /// Leader of every region after joining; pairs are (cost, a, b), cheapest first, each region joins

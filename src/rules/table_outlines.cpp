@@ -83,19 +83,6 @@ std::vector<RuleInfo> orientation_rules() {
             {"unsheltered", "", planes::kUnsheltered, "share that may on the other side"}},
        .needs = {Rule::kOrientation},
        .test = "rules/effects: each rule of planes changes a source that was made for it",
-       .made_on = {"als/block-a"}},
-      {.rule = Rule::kFoot,
-       .id = "planes.foot",
-       .title = "a few points low on walls are a cloud's foot",
-       .sees = "Four points of a cloud, together and below the box of all planes' points.",
-       .does = "Lowers the box to them; walls end there.",
-       .paper = "The paper takes the box of all points.",
-       .reason = "Airborne clouds have few points on walls, but those say where walls end.",
-       .parameters = {{"points", "", static_cast<double>(planes::kFootPoints), "fewer are noise"},
-                      {"height", "m", planes::kFootHeight, "that they have together"},
-                      {"beside", "m", planes::kFootBeside, "that they may be out of the box"}},
-       .needs = {Rule::kFloaters},
-       .test = "rules/effects: each rule of planes changes a source that was made for it",
        .made_on = {"als/block-a"}}};
 }
 

@@ -119,22 +119,6 @@ std::vector<RuleInfo> form_rules() {
        .needs = {},
        .test = "elements/elements: balconies and loggias are segments of their own, whole",
        .made_on = {"ingolstadt-north-scan", "ingolstadt-north", "synth", "synth-scan"}},
-      {.rule = Rule::kChimneySegments,
-       .id = "segments.chimneys",
-       .title = "a chimney's walls leave a detail that is mostly something else",
-       .sees = "A chimney whose walls lie in one small segment with larger planes.",
-       .does = "Makes them a segment of their own.",
-       .paper = "Rays alone decide.",
-       .reason = "A chimney of which a scan shows a corner only shared a dormer's segment.",
-       .parameters =
-           {{"reach", "m", kChimneyReach, "around it: planes there are its own"},
-            {"most_share", "", kMostShare,
-             "a segment of more than this part of the voxels keeps chimneys: two windows' "
-             "reveals look like one"}},
-       .needs = {},
-       .test = "elements/elements: a chimney's corner leaves a detail that is mostly something "
-               "else, not the body",
-       .made_on = {"synth-scan"}},
       {.rule = Rule::kFidelity,
        .id = "segments.fidelity",
        .title = "fidelity is what opens: volume and outline",

@@ -2,9 +2,8 @@
 // Differs: robust rules only. Rays give a balcony's floor or one of its walls to the body, a
 //   loggia's ceiling and cheeks to the body or to several small segments. The planes of a balcony,
 //   a loggia or a recess become one segment: the one that has most of them and little else, or a
-//   new one. A chimney of which a scan shows a corner only may share a detail's segment with
-//   something larger; its planes then become a segment, too. Whole chimneys are parted by rays:
-//   they get their name, so that small and large ones are one kind.
+//   new one. Chimneys are parted by rays: they get their name, so that small and large ones are
+//   one kind.
 // Notation: –
 #include "ownership.h"
 
@@ -72,34 +71,6 @@ bool may_own(const Planes& planes, const Element& element, double alcove_area) {
   return element.kind != ElementKind::kChimney;
 }
 
-/// A chimney whose walls lie in one segment that is mostly something else leaves it.
-void part_chimney(const Planes& planes, const HitGrid& grid, const Element& chimney,
-                  const std::vector<char>& is_taken, SegmentDraft& draft) {
-  const std::vector<int> of = segments_by_plane(planes.planes.size(), draft);
-  const int home = of[chimney.planes.front()];
-  std::int64_t voxels = 0;
-  for (const Segment& s : draft.segments) voxels += s.voxels;
-  if (home < 0 || kMostShare * draft.segments[home].voxels > voxels ||
-      std::any_of(chimney.planes.begin(), chimney.planes.end(),
-                  [&](int p) { return is_taken[p] || of[p] != home; }))
-    return;
-  Region grown = chimney.solid;
-  for (HalfSpace& side : grown) side.offset += kChimneyReach;
-  Segment own, rest = draft.segments[home];
-  for (const int p : rest.planes)
-    if (contains(grown, planes.planes[p].centroid) ||
-        std::find(chimney.planes.begin(), chimney.planes.end(), p) != chimney.planes.end())
-      own.planes.push_back(p);
-  std::erase_if(rest.planes,
-                [&](int p) { return std::binary_search(own.planes.begin(), own.planes.end(), p); });
-  if (area_of(planes, rest.planes) <= area_of(planes, own.planes)) return;
-  own.voxels = std::min(rest.voxels, voxels_in(grid, chimney.solid));
-  own.volume = static_cast<double>(own.voxels) * grid.voxel_volume();
-  rest.voxels -= own.voxels, rest.volume -= own.volume;
-  draft.segments[home] = std::move(rest);
-  draft.segments.push_back(std::move(own));
-}
-
 /// Most of the segment's area is one chimney's.
 bool is_chimney(const Planes& planes, const Segment& segment,
                 const std::vector<Element>& elements) {
@@ -117,14 +88,13 @@ bool is_chimney(const Planes& planes, const Segment& segment,
 
 void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
                       SegmentDraft& draft) {
-  const bool has_forms = options.rules.has(Rule::kElementSegments);
-  if (!has_forms && !options.rules.has(Rule::kChimneySegments)) return;
+  if (!options.rules.has(Rule::kElementSegments)) return;
   std::vector<int> every(planes.planes.size());
   for (std::size_t p = 0; p < every.size(); ++p) every[p] = static_cast<int>(p);
   std::vector<char> is_taken(planes.planes.size(), 0);
   const std::vector<Element> elements = find_elements(planes, every, options.rules);
   for (const Element& element : elements) {
-    if (!has_forms || !may_own(planes, element, options.alcove_area)) continue;
+    if (!may_own(planes, element, options.alcove_area)) continue;
     std::vector<int> of = segments_by_plane(planes.planes.size(), draft), free;
     for (const int p : element.planes)
       if (!is_taken[p]) free.push_back(p);
@@ -156,11 +126,8 @@ void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOp
         s.voxels = 0, s.volume = 0;
       }
   }
-  for (const Element& element : elements)  // others may have taken a chimney's walls: a dormer's
-    if (options.rules.has(Rule::kChimneySegments) && element.kind == ElementKind::kChimney)
-      part_chimney(planes, grid, element, is_taken, draft);
   std::erase_if(draft.segments, [](const Segment& s) { return s.planes.empty(); });
-  if (!has_forms || !options.rules.has(Rule::kChimneys)) return;
+  if (!options.rules.has(Rule::kChimneys)) return;
   for (Segment& s : draft.segments)
     if (s.kind == ElementKind::kPlain && is_chimney(planes, s, elements))
       s.kind = ElementKind::kChimney;

@@ -8,8 +8,8 @@
 namespace colod {
 
 /// The planes of each balcony, and of each loggia all of whose planes are smaller than
-/// `alcove_area`, become one segment (Rule::kElementSegments), and the walls of a chimney that its
-/// segment has little of (Rule::kChimneySegments); what was known of the coverage is void.
+/// `alcove_area`, become one segment (Rule::kElementSegments), and segments that are chimneys get
+/// their name; what was known of the coverage is void.
 void give_to_elements(const Planes& planes, const HitGrid& grid, const SegmentOptions& options,
                       SegmentDraft& draft);
 

@@ -73,7 +73,7 @@ Segments paper_segments(const Planes& planes, const SegmentOptions& options) {
     draft.segments[first_a + g].is_alcove = is_mostly_reversed(a.groups.groups[g], is_reversed);
   const int first_c = append_segments(grid_c, c, draft);
   draft.coverage = overlay_coverage(grid_a, a.groups, first_a, grid_c, c.groups, first_c);
-  if (options.rules.has(Rule::kElementSegments) || options.rules.has(Rule::kChimneySegments)) {
+  if (options.rules.has(Rule::kElementSegments)) {
     give_to_elements(planes, grid_a, options, draft);
     cover_plain(draft);
   }

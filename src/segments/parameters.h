@@ -17,10 +17,7 @@ constexpr double kSteps[] = {1.0, 1.7, 2.4};  // voxels
 constexpr double kFacing = -0.7;              // cosine between normals that face each other
 constexpr double kParallel = 0.94;            // cosine (20°) up to which normals are not parallel
 constexpr std::size_t kLeastPlanes = 3;
-constexpr double kMostOthers = 2.0;     // of the element's area: planes of others in its segment
-constexpr double kChimneyReach = 0.25;  // metres around a chimney: planes there are its own
-constexpr int kMostShare = 50;  // a segment of more than a 50th of the voxels keeps chimneys: two
-                                // windows' reveals look like one
+constexpr double kMostOthers = 2.0;    // of the element's area: planes of others in its segment
 constexpr double kSameElement = 0.5;   // of its area that an earlier one has taken: it is that one
 constexpr int kMostTogether = 6;       // segments of a set: more are never dropped together
 constexpr double kOutlineShare = 0.3;  // of the fidelity

@@ -40,7 +40,7 @@ TEST_CASE("the list says what is on, a page what a rule is, JSON all of it") {
   const Result list = folder.colod("rules --without planes.coplanar");
   CHECK(list.exit_code == 0);
   CHECK(list.out.find("planes.coplanar        off") != std::string::npos);
-  CHECK(list.out.find("planes.crossing        off") != std::string::npos);
+  CHECK(list.out.find("planes.sheets          off") != std::string::npos);
   CHECK(list.out.find("planes.floaters        on") != std::string::npos);
   CHECK(folder.colod("rules --rules paper").out.find("  on   ") == std::string::npos);
   CHECK(folder.colod("rules planes.floaters").out.starts_with("# planes.floaters\n"));
@@ -75,7 +75,7 @@ TEST_CASE("rules that are off reach the report, by options, config and scene fil
                                                                                      json::array());
   };
   CHECK(without("build in -o out" + options).empty());
-  const json expected = {"planes.coplanar", "planes.crossing", "planes.sheets", "chain.volume"};
+  const json expected = {"planes.coplanar", "planes.sheets", "chain.volume"};
   CHECK(without("build in -o out --without chain.volume --without planes.coplanar" + options) ==
         expected);
   std::ofstream(folder.path() / "c.toml") << "without = [\"chain.volume\", \"planes.coplanar\"]\n";
@@ -83,7 +83,7 @@ TEST_CASE("rules that are off reach the report, by options, config and scene fil
 
   const std::string some = " --without chain.volume,planes.coplanar --ns 16 --nr 20";
   const Result segmented = folder.colod("segment in -o s.colod" + some);
-  CHECK(segmented.err.find("planes.crossing, planes.sheets") != std::string::npos);
+  CHECK(segmented.err.find("planes.sheets") != std::string::npos);
   REQUIRE(folder.colod("analyze s.colod").exit_code == 0);
   REQUIRE(folder.colod("mesh s.colod").exit_code <= 1);
   CHECK(without("export s.colod -o out --no-report-html --quiet") == expected);

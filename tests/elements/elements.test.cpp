@@ -308,23 +308,3 @@ TEST_CASE("a window's recess is one segment, although rays give its planes to se
                         [](const Segment& g) { return g.is_alcove; }) == 1);
   }
 }
-
-TEST_CASE("a chimney's corner leaves a detail that is mostly something else, not the body") {
-  Mesh house = join(plain_house(), box_mesh({5, 3, 7}, {8, 7, 10}));  // a storey on the roof
-  add_quad(house, {2, 2, 7}, {2.6, 2, 7}, {2.6, 2, 8.7}, {2, 2, 8.7});
-  add_quad(house, {2, 2.6, 7}, {2, 2, 7}, {2, 2, 8.7}, {2, 2.6, 8.7});
-  const Planes planes = planes_of_mesh(house);
-  const HitGrid grid = cast_visibility(planes, {.ns = 10, .nr = 20});
-  const auto chimney = elements_of(planes);
-  REQUIRE(chimney.size() == 1);
-  for (const bool is_detail : {true, false}) {
-    SegmentDraft draft;
-    draft.segments.resize(2);
-    for (int p = 0; p < static_cast<int>(planes.planes.size()); ++p)
-      draft.segments[planes.planes[p].centroid.z() > 7.1].planes.push_back(p);
-    draft.segments[0].voxels = 1000, draft.segments[1].voxels = is_detail ? 15 : 500;
-    give_to_elements(planes, grid, SegmentOptions{}, draft);
-    REQUIRE(draft.segments.size() == (is_detail ? 3u : 2u));
-    CHECK((draft.segments.back().planes == chimney[0].planes) == is_detail);
-  }
-}

@@ -244,21 +244,3 @@ TEST_CASE("walls of an exact model stay where they are, those of a noisy one are
     CHECK(cosine == Approx(noise > 0 ? 0 : lean).margin(1e-5));
   }
 }
-
-TEST_CASE("a tilted part that a wall passes through the middle of is that wall") {
-  const double slope = 0.125;
-  for (const double from : {11.0, 10.0}) {  // where the tilted part meets the wall's plane
-    const Source source =
-        as_source(join(sheet({0, 0, 0}, {10, 0, 0}, 6),
-                       sheet({10, slope * (10 - from), 0}, {12, slope * (12 - from), 0}, 6)));
-    const regions::Items items = regions::collect_items(source);
-    std::vector<regions::Region> found(2);
-    for (int f = 0; f < items.size(); ++f) {
-      regions::Region& r = found[items.center[f].x() > 10];
-      r.items.push_back(f), r.area += items.area[f], r.moments.add_item(items, f);
-    }
-    for (regions::Region& r : found) r.normal = {0, -1, 0}, r.refit();
-    regions::regularize(items, 0.1, {0.03, 0.03, 0, true}, RuleSet::all(), found);
-    CHECK(found.size() == (from > 10 ? 1 : 2));
-  }
-}

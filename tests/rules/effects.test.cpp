@@ -129,12 +129,9 @@ TEST_CASE("each rule of planes changes a source that was made for it") {
   const Source cloud = airborne_cloud();
   const Planes robust = detect_planes(cloud);
   for (const Plane& p : robust.planes) CHECK(p.normal.z() > 0.5);
-  CHECK(robust.box.min.z() < 1);
-  const Planes without =
-      detect_planes(cloud, {.rules = RuleSet::all().without(Rule::kAirborne).without(Rule::kFoot)});
+  const Planes without = detect_planes(cloud, {.rules = RuleSet::all().without(Rule::kAirborne)});
   CHECK(std::any_of(without.planes.begin(), without.planes.end(),
                     [](const Plane& p) { return p.normal.z() < 0; }));
-  CHECK(without.box.min.z() > 7);
   const std::vector<Source> scans = neighbourhood(4, true, 15);
   for (const Rule rule :
        {Rule::kFloaters, Rule::kFaces, Rule::kNoise, Rule::kSmoothNormals, Rule::kGrowing,
