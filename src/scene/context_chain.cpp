@@ -137,33 +137,109 @@ Work picked(const Work& from, const std::vector<std::uint32_t>& indices) {
   return out;
 }
 
-/// Metres from the first mesh's vertices to the second mesh, at most.
-double distance_to(const Mesh& from, const Mesh& to) {
-  if (to.faces.empty() || from.vertices.empty()) return 0;
+/// Metres from places to a mesh.
+std::vector<double> distances(const std::vector<Vec3>& places, const Mesh& to) {
   const RayScene scene(to);
-  const std::size_t step = 1 + from.vertices.size() / kMostMeasured;
+  std::vector<double> out;
+  for (const Vec3& p : places) out.push_back(scene.nearest(p).distance);
+  return out;
+}
+
+/// Metres from the middles of a mesh's faces and edges to another one, at most: its vertices are
+/// the other one's own.
+double bulge(const Mesh& mesh, const Mesh& from) {
+  std::vector<Vec3> middles;
+  const std::size_t step = 1 + 4 * mesh.faces.size() / kMostMeasured;
+  for (std::size_t f = 0; f < mesh.faces.size(); f += step) {
+    const auto at = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];
+    };
+    middles.push_back((at(0) + at(1) + at(2)) / 3);
+    for (std::size_t k = 0; k < 3; ++k) middles.push_back((at(k) + at((k + 1) % 3)) / 2);
+  }
   double most = 0;
-  for (std::size_t v = 0; v < from.vertices.size(); v += step)
-    most = std::max(most, scene.nearest(from.vertices[v]).distance);
+  for (const double d : distances(middles, from)) most = std::max(most, d);
   return most;
 }
 
-/// As many faces as the room for a tile has, or as its detail needs.
-Work simplified(const Work& from, double error) {
-  if (from.mesh.faces.empty()) return from;
+/// Per vertex a number of its connected piece: the lowest vertex of it.
+std::vector<std::size_t> pieces_of(const Mesh& mesh) {
+  std::vector<std::size_t> above(mesh.vertices.size());
+  for (std::size_t v = 0; v < above.size(); ++v) above[v] = v;
+  const auto top = [&](std::size_t v) {
+    while (above[v] != v) v = above[v] = above[above[v]];
+    return v;
+  };
+  for (const Face& f : mesh.faces)
+    for (std::size_t k = 1; k < 3; ++k) {
+      const std::size_t a = top(static_cast<std::size_t>(f[0])),
+                        b = top(static_cast<std::size_t>(f[k]));
+      above[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::size_t v = 0; v < above.size(); ++v) above[v] = top(v);
+  return above;
+}
+
+/// Without pieces that are no larger than `size`, unless nothing else is there: whoever does not
+/// see them misses no more than their size, however far they are from all else. Left to the
+/// simplification, they would collapse and count with that distance.
+Work without_small(const Work& from, double size) {
+  const std::vector<std::size_t> piece = pieces_of(from.mesh);
+  std::vector<Box> boxes(piece.size());
+  std::vector<char> is_kept(piece.size(), 0);
+  for (std::size_t v = 0; v < piece.size(); ++v) {
+    boxes[piece[v]].extend(from.mesh.vertices[v]);
+    is_kept[piece[v]] |= from.is_joint[v];
+  }
+  double largest = 0;
+  std::vector<std::uint32_t> indices;
+  for (const Face& f : from.mesh.faces) {
+    const std::size_t own = piece[static_cast<std::size_t>(f[0])];
+    const double across = boxes[own].size().norm();
+    if (is_kept[own] || across > size)
+      for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
+    else
+      largest = std::max(largest, across);
+  }
+  if (indices.empty()) return from;
+  Work out = picked(from, indices);
+  out.deviation = largest;
+  return out;
+}
+
+/// Quadrics tell of means: a tip of little area goes however high it is. What is then too far off
+/// is kept, and all done again.
+Work collapsed(const Work& from, double error) {
   const Vec3 middle = bounding_box(from.mesh.vertices).center();
   std::vector<float> positions;
   for (const Vec3& p : from.mesh.vertices)
     for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - middle[k]));
-  std::vector<std::uint32_t> indices, kept;
+  std::vector<std::uint32_t> indices;
   for (const Face& f : from.mesh.faces)
     for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
-  for (int i = 0; i < kMostRelaxed; ++i, error *= 2) {
-    kept = simplify_within(positions, indices, from.is_joint, static_cast<float>(error));
-    if (kept.size() <= 3 * kMostFaces) break;
+  std::vector<char> is_locked = from.is_joint;
+  Work out;
+  for (int i = 0; i < kMostKept; ++i) {
+    out = picked(from, simplify_within(positions, indices, is_locked, static_cast<float>(error)));
+    if (out.mesh.faces.empty()) return from;
+    const std::vector<double> off = distances(from.mesh.vertices, out.mesh);
+    out.deviation = *std::max_element(off.begin(), off.end());
+    if (out.deviation <= kFarthest * error) break;
+    for (std::size_t v = 0; v < off.size(); ++v) is_locked[v] |= off[v] > kFarthest * error;
   }
-  Work out = picked(from, kept);
-  out.deviation = std::max(distance_to(from.mesh, out.mesh), distance_to(out.mesh, from.mesh));
+  out.deviation = std::max(out.deviation, bulge(out.mesh, from.mesh));
+  return out;
+}
+
+/// As many faces as the room for a tile has, or as its detail needs.
+Work simplified(const Work& from, double error) {
+  Work out;
+  for (int i = 0; i < kMostRelaxed; ++i, error *= 2) {
+    const Work large = without_small(from, error);
+    out = collapsed(large, error);
+    out.deviation = std::max(out.deviation, large.deviation);
+    if (out.mesh.faces.size() <= kMostFaces) break;
+  }
   return out;
 }
 

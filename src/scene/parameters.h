@@ -119,6 +119,8 @@ constexpr std::size_t kMostFaces = 60'000;  // of a coarser tile: what a client 
 constexpr std::size_t kFewFaces = 20'000;   // … of the coarsest
 constexpr int kMostRelaxed = 8;             // times the error is doubled for it
 constexpr int kMostAbove = 12;              // levels above the one that holds all
+constexpr double kFarthest = 2;  // times that error: what a simplified tile's vertices may be off
+constexpr int kMostKept = 4;     // rounds of keeping what is farther off
 constexpr std::size_t kMostMeasured = 100'000;  // vertices that a tile's distance is measured at
 
 }  // namespace colod::parameters::context

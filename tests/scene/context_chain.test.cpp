@@ -159,3 +159,32 @@ TEST_CASE("locked vertices stay, all others of a plane go") {
   }
   CHECK(area == Approx(cells * cells));
 }
+
+TEST_CASE("small pieces high above the ground are no deviation, tall tips stay") {
+  const double size = GENERATE(1.0, 10.0);  // all of the place is so many times as large
+  const double texel = size * kCells / 2048;
+  Source whole = hills(0, 0);
+  for (Vec3& p : whole.mesh.vertices) p *= size;
+  const auto triangle = [&](const Vec3& at, const Vec3& side, const Vec3& up) {
+    const int n = static_cast<int>(whole.mesh.vertices.size());
+    for (const Vec3& p : {at, Vec3(at + side), Vec3(at + up)}) whole.mesh.vertices.push_back(p);
+    whole.mesh.faces.push_back({n, n + 1, n + 2});
+    whole.look.colors.push_back(whole.look.colors.back());
+  };
+  const Vec3 stray = size * Vec3(5, 5, 50), foot = size * Vec3(12, 12, 0);
+  triangle(stray, texel * Vec3(0.5, 0, 0), texel * Vec3(0, 0.5, 0));
+  triangle(foot, texel * Vec3(0.2, 0, 0), size * Vec3(0, 0, 9));
+  const auto read = [&] { return ChainPart{whole, {}, {}}; };
+  const ContextChain chain({{bounding_box(whole.mesh.vertices), read, texel}}, 16 << 20);
+  bool is_lower = false;
+  for (std::size_t i = 0; i < chain.nodes().size(); ++i) {
+    const ChainNode& node = chain.nodes()[i];
+    if (node.leaf >= 0) continue;
+    INFO("node " << i << ", texel " << node.texel);
+    const Box box = bounding_box(chain.read(i).mesh.vertices);
+    CHECK(box.max.z() == Approx(9 * size).margin(2 * node.deviation));
+    is_lower = is_lower || box.max.z() < 49 * size;
+    CHECK(node.deviation < 8 * node.texel);
+  }
+  CHECK(is_lower);
+}
