@@ -19,6 +19,8 @@ namespace colod {
 namespace {
 
 constexpr double kLeastCovered = 0.1;  // of a footprint's area, by what faces up over it
+constexpr double kFarBeyond =
+    1000;  // metres beyond the scene: no footprint that reaches it goes on
 constexpr std::size_t kSurveyImages = std::size_t{128} << 20;  // bytes of decoded images
 constexpr std::uintmax_t kLeastScene =
     100'000;                 // bytes of a file: three houses on terrain take more
@@ -85,15 +87,29 @@ std::optional<Georeference> place_of(const TileTree& tree, const SceneOutput& op
   return options.crs == "local" ? std::nullopt : georeference_beside(tree.path);
 }
 
+/// A corner that was mistyped would make one plan as large as a country.
+bool reaches_far(const Box& footprint, const Box& scene) {
+  const Vec3 beyond = (scene.min - footprint.min).cwiseMax(footprint.max - scene.max);
+  return beyond.head<2>().maxCoeff() > kFarBeyond;
+}
+
 /// Footprints that the scene reaches; the rest is told in one line.
 std::vector<Footprint> on_scene(Footprints found, const Box& scene, const std::string& path,
                                 bool is_on_earth, Inventory& inventory) {
   std::vector<Footprint> kept;
+  std::size_t outside = 0;
   Box all;
   for (Footprint& f : found.all) {
     const Box box = box_of(f);
     all.extend(box);
-    if (is_over(box, scene)) kept.push_back(std::move(f));
+    if (!is_over(box, scene))
+      ++outside;
+    else if (reaches_far(box, scene))
+      inventory.failures.push_back({path, "footprint '" + f.id +
+                                              "' reaches more than a kilometre beyond the scene: "
+                                              "it is left out; is one of its corners wrong?"});
+    else
+      kept.push_back(std::move(f));
   }
   for (const FootprintProblem& p : found.problems)
     inventory.failures.push_back({path, "footprint '" + p.id + "' " + p.message});
@@ -107,9 +123,9 @@ std::vector<Footprint> on_scene(Footprints found, const Box& scene, const std::s
                                        (found.crs.empty() ? "none is said" : found.crs) + ") right?"
                                  : "; the scene is nowhere on Earth, so that footprints must be in "
                                    "its own metres (--crs and --origin place it)"));
-  if (kept.size() < found.all.size())
-    inventory.warnings.push_back(path + ": " + std::to_string(found.all.size() - kept.size()) +
-                                 " of " + std::to_string(found.all.size()) +
+  if (outside > 0)
+    inventory.warnings.push_back(path + ": " + std::to_string(outside) + " of " +
+                                 std::to_string(found.all.size()) +
                                  " footprints lie outside of the scene and are left out");
   return kept;
 }

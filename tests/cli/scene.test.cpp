@@ -167,11 +167,13 @@ TEST_CASE("footprints that meet no surface say so and cost themselves only") {
   std::filesystem::remove(folder.path / "tile3.b3dm");
   const std::string some = folder.write("some.geojson", plan({{"left", square(12, 14, 8, 10)},
                                                               {"gap", square(30, 30, 8, 8)},
+                                                              {"wide", square(12, 14, 5e6, 10)},
                                                               {"away", square(500, 500, 9, 9)}}));
   const Run run = build(folder, folder.path.string() + " --footprints " + some);
   INFO(run.log);
   CHECK(run.code == 1);
-  CHECK_THAT(run.log, Contains("'tile3.b3dm' is missing") && Contains("1 of 3 footprints") &&
+  CHECK_THAT(run.log, Contains("'tile3.b3dm' is missing") && Contains("1 of 4 footprints") &&
+                          Contains("'wide' reaches more than a kilometre") &&
                           Contains("gap: no surface of the scene"));
   CHECK(report(folder)["buildings"].size() == 2);
 }
