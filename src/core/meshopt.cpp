@@ -93,8 +93,8 @@ void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
 
 std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices,
                                    std::size_t vertices) {
-  static const bool kHasVersion = (meshopt_encodeIndexVersion(1), true);  // the extension's
-  (void)kHasVersion;
+  static const bool has_version = (meshopt_encodeIndexVersion(1), true);  // the extension's
+  (void)has_version;
   std::vector<unsigned char> out(meshopt_encodeIndexBufferBound(indices.size(), vertices));
   out.resize(meshopt_encodeIndexBuffer(out.data(), out.size(), indices.data(), indices.size()));
   return {out.begin(), out.end()};
@@ -102,8 +102,8 @@ std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices,
 
 std::string encode_meshopt_vertices(const std::string& bytes, std::size_t stride) {
   const std::size_t count = bytes.size() / stride;
-  static const bool kHasVersion = (meshopt_encodeVertexVersion(0), true);  // the extension's
-  (void)kHasVersion;
+  static const bool has_version = (meshopt_encodeVertexVersion(0), true);  // the extension's
+  (void)has_version;
   std::vector<unsigned char> out(meshopt_encodeVertexBufferBound(count, stride));
   out.resize(meshopt_encodeVertexBuffer(out.data(), out.size(), bytes.data(), count, stride));
   return {out.begin(), out.end()};
