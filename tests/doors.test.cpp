@@ -36,11 +36,11 @@ std::vector<fs::path> sources(const std::vector<std::string>& folders) {
 }
 
 std::vector<Include> includes(const std::vector<std::string>& folders) {
-  static const std::regex kInclude("(?:^|\n)#include [<\"]([^>\"]+)[>\"]");
+  static const std::regex include("(?:^|\n)#include [<\"]([^>\"]+)[>\"]");
   std::vector<Include> found;
   for (const fs::path& file : sources(folders)) {
     const std::string text = slurp(kRoot / file);
-    for (std::sregex_iterator it(text.begin(), text.end(), kInclude), end; it != end; ++it)
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
       found.push_back({file, (*it)[1]});
   }
   return found;
@@ -58,10 +58,10 @@ std::vector<std::string> leaks(const std::string& library, const std::string& do
 
 /// The rooms of src/ in the order in which data flow, as CMakeLists.txt adds them.
 std::vector<std::string> rooms() {
-  static const std::regex kAdded("foreach\\(room ([a-z_ ]+)\\)");
+  static const std::regex added("foreach\\(room ([a-z_ ]+)\\)");
   std::smatch found;
   const std::string text = slurp(kRoot / "CMakeLists.txt");
-  REQUIRE(std::regex_search(text, found, kAdded));
+  REQUIRE(std::regex_search(text, found, added));
   std::istringstream words(found[1]);
   std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
   for (const char* last : {"publish", "job", "viewer", "cli", "library"}) all.emplace_back(last);
@@ -70,10 +70,10 @@ std::vector<std::string> rooms() {
 
 /// The headers of a room that others may include: `DOORS` of its CMakeLists.txt, else its own.
 std::vector<std::string> doors(const std::string& room) {
-  static const std::regex kDoors("DOORS ([a-z0-9_.\\s]+)");
+  static const std::regex doors("DOORS ([a-z0-9_.\\s]+)");
   std::smatch found;
   const std::string text = slurp(kRoot / "src" / room / "CMakeLists.txt");
-  if (!std::regex_search(text, found, kDoors)) return {room + ".h"};
+  if (!std::regex_search(text, found, doors)) return {room + ".h"};
   std::istringstream words(found[1]);
   return {std::istream_iterator<std::string>(words), {}};
 }
@@ -144,8 +144,8 @@ TEST_CASE(
 TEST_CASE("every library that CMake looks for has a page in third_party_notes") {
   const std::string text =
       slurp(kRoot / "CMakeLists.txt") + slurp(kRoot / "tests" / "CMakeLists.txt");
-  static const std::regex kFind("(?:find_package|find_library)\\(([A-Za-z0-9_]+)");
-  static const std::vector<std::pair<std::string, std::string>> kOthers = {
+  static const std::regex find("(?:find_package|find_library)\\(([A-Za-z0-9_]+)");
+  static const std::vector<std::pair<std::string, std::string>> others = {
       {"Eigen3", "eigen"},
       {"TBB", "onetbb"},
       {"JPEG", "libjpeg-turbo"},
@@ -155,9 +155,9 @@ TEST_CASE("every library that CMake looks for has a page in third_party_notes") 
       {"LPSOLVE_LIBRARY", "lp_solve"},
       {"COLAMD_LIBRARY", "lp_solve"},
       {"PkgConfig", "cpp-httplib"}};
-  for (std::sregex_iterator it(text.begin(), text.end(), kFind), end; it != end; ++it) {
+  for (std::sregex_iterator it(text.begin(), text.end(), find), end; it != end; ++it) {
     std::string page = (*it)[1];
-    for (const auto& [name, other] : kOthers)
+    for (const auto& [name, other] : others)
       if (page == name) page = other;
     std::transform(page.begin(), page.end(), page.begin(), [](char c) { return std::tolower(c); });
     INFO((*it)[1] << " needs third_party_notes/" << page << ".md");

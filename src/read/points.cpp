@@ -97,7 +97,7 @@ struct Columns {
 
 /// By a header's words, where they name all three axes.
 Columns columns_of(const Fields& names) {
-  static const std::vector<std::string> kNames[9] = {
+  static const std::vector<std::string> headings[9] = {
       {"x", "easting", "east", "lon", "longitude", "rechtswert", "coordx", "xcoord"},
       {"y", "northing", "north", "lat", "latitude", "hochwert", "coordy", "ycoord"},
       {"z", "height", "elevation", "altitude", "h", "coordz", "zcoord"},
@@ -112,7 +112,7 @@ Columns columns_of(const Fields& names) {
     std::string name = lower(std::string(trimmed(names[i], " \t/\"'")));
     name = name.substr(0, name.find_first_of("([ "));  // units behind it
     for (std::size_t k = 0; k < 9; ++k)
-      if (found.of[k] < 0 && std::count(kNames[k].begin(), kNames[k].end(), name) > 0)
+      if (found.of[k] < 0 && std::count(headings[k].begin(), headings[k].end(), name) > 0)
         found.of[k] = static_cast<int>(i);
   }
   const bool is_complete = found.of[0] >= 0 && found.of[1] >= 0 && found.of[2] >= 0;

@@ -2,6 +2,8 @@
 // The registry in room `rules` says what each does and why it has its value.
 #pragma once
 
+#include <cstddef>
+
 namespace colod::parameters::ground {
 
 constexpr double kLeastCell = 0.25, kMostCell = 1;  // metres
