@@ -20,8 +20,8 @@ const fs::path kRoot = COLOD_SOURCE_DIR;
 
 /// The C++ text with literals that are only broken for length joined.
 std::string with_whole_literals(const std::string& text) {
-  static const std::regex kBreak("\"\\s*\n\\s*\"");
-  return std::regex_replace(text, kBreak, "");
+  static const std::regex line_break("\"\\s*\n\\s*\"");
+  return std::regex_replace(text, line_break, "");
 }
 
 }  // namespace
