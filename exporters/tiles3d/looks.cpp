@@ -66,14 +66,25 @@ TileLook colored(const PlannedTile& tile, const std::vector<ExportBuilding>& bui
   return look;
 }
 
-/// A building's image in the tile's, and its coordinates there.
-LevelLook moved(const LevelLook& look, std::size_t triangles, const PackedRect& rect,
-                Raster& whole) {
+/// What a building of a shared image wears there.
+Raster swatch(const LevelLook& look) {
+  if (look.has_texture()) return look.raster;
+  Raster plain(kBlock, kBlock);
+  std::fill(plain.rgb.begin(), plain.rgb.end(), kPlain[0]);
+  return plain;
+}
+
+int blocks(int texels) { return (texels + kBlock - 1) / kBlock * kBlock; }
+
+/// A building's image in the tile's, and its coordinates there; the rest of its last blocks is like
+/// its border.
+LevelLook moved(const LevelLook& look, std::size_t triangles, const Raster& image,
+                const PackedRect& rect, Raster& whole) {
   LevelLook out;
   out.width = whole.width, out.height = whole.height;
   const Vec2f size(static_cast<float>(whole.width), static_cast<float>(whole.height));
   const Vec2f corner(static_cast<float>(rect.x), static_cast<float>(rect.y));
-  const Vec2f own(static_cast<float>(rect.width), static_cast<float>(rect.height));
+  const Vec2f own(static_cast<float>(image.width), static_cast<float>(image.height));
   const Vec2f middle = (corner + 0.5f * own).cwiseQuotient(size);
   out.uvs.assign(triangles, {middle, middle, middle});
   for (std::size_t t = 0; t < look.uvs.size(); ++t)
@@ -82,29 +93,46 @@ LevelLook moved(const LevelLook& look, std::size_t triangles, const PackedRect& 
   for (int y = 0; y < rect.height; ++y)
     for (int x = 0; x < rect.width; ++x)
       std::memcpy(whole.at(rect.x + x, rect.y + y),
-                  look.uvs.empty() ? kPlain.data() : look.raster.at(x, y), 3);
+                  image.at(std::min(x, image.width - 1), std::min(y, image.height - 1)), 3);
   return out;
+}
+
+/// Places the images, each half as large and half again until they fit. Returns width and height;
+/// {0, 0}: one block for each is too much.
+std::array<int, 2> fit(std::vector<Raster>& images, std::vector<PackedRect>& rects, int largest) {
+  while (true) {
+    rects.clear();
+    bool is_least = true;
+    for (const Raster& image : images) {
+      rects.push_back({blocks(image.width), blocks(image.height)});
+      is_least = is_least && image.width <= kBlock && image.height <= kBlock;
+    }
+    const std::array<int, 2> size = pack_rects(rects, largest);
+    if (size[0] > 0 || is_least) return size;
+    for (Raster& image : images)
+      if (image.width > kBlock || image.height > kBlock) image = halve(image);
+  }
 }
 
 TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
                 int largest) {
-  std::vector<PackedRect> rects;
+  std::vector<Raster> images;
   const LevelLook* first = nullptr;
   for (const TilePart& part : tile.parts) {
     const LevelLook& own = part.level->look;
-    rects.push_back(own.has_texture() ? PackedRect{own.width, own.height}
-                                      : PackedRect{kBlock, kBlock});
     if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, buildings);
+    images.push_back(swatch(own));
     if (own.has_texture() && !first) first = &own;
   }
-  const auto [width, height] = pack_rects(rects, largest);
+  std::vector<PackedRect> rects;
+  const auto [width, height] = fit(images, rects, largest);
   if (width == 0) return colored(tile, buildings);
   TileLook look;
   Raster whole(width, height);
   std::fill(whole.rgb.begin(), whole.rgb.end(), kPlain[0]);
   for (std::size_t i = 0; i < tile.parts.size(); ++i)
-    look.parts.push_back(
-        moved(tile.parts[i].level->look, tile.parts[i].mesh->triangles.size(), rects[i], whole));
+    look.parts.push_back(moved(tile.parts[i].level->look, tile.parts[i].mesh->triangles.size(),
+                               images[i], rects[i], whole));
   look.whole.uvs = look.parts.front().uvs;  // that there is a texture
   look.whole.format = first->format;
   look.whole.quality = first->quality;

@@ -11,8 +11,9 @@ struct TileLook {
   LevelLook whole;               ///< the image or the colours that all of them share; or nothing
 };
 
-/// Buildings without appearance are grey beside others. Where the atlases of a group do not fit
-/// into one of `largest` texels a side, its facets have one colour each.
+/// Buildings without appearance are grey beside others. Atlases of a group that do not fit into one
+/// of `largest` texels a side are halved until they do; its facets have one colour each where not
+/// even a block of texels for each building fits.
 TileLook look_of(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
                  int largest);
 

@@ -71,57 +71,6 @@ std::string read_image(const ImagePlace& place, std::size_t most_bytes) {
 
 namespace {
 
-/// Which pixels of a side of n the pixel i of half as many covers, and how much of each.
-struct Span {
-  int first, count;
-  std::array<float, 3> weight;
-};
-
-std::vector<Span> spans(int n, int half) {
-  std::vector<Span> out;
-  const double step = static_cast<double>(n) / half;  // 1, 2 or a little more
-  for (int i = 0; i < half; ++i) {
-    const double begin = i * step, end = (i + 1) * step;
-    Span s{static_cast<int>(begin + 1e-9), 0, {}};
-    for (int p = s.first; p < n && p < end - 1e-9 && s.count < 3; ++p) {
-      const double covered = std::min(end, p + 1.0) - std::max(begin, static_cast<double>(p));
-      s.weight[s.count++] = static_cast<float>(covered / step);
-    }
-    out.push_back(s);
-  }
-  return out;
-}
-
-/// What is transparent has no part in the colour, unless all of a pixel is.
-Raster halve(const Raster& fine) {
-  Raster out(std::max(1, fine.width / 2), std::max(1, fine.height / 2));
-  if (!fine.alpha.empty()) out.alpha.resize(out.rgb.size() / 3);
-  const std::vector<Span> columns = spans(fine.width, out.width);
-  const std::vector<Span> rows = spans(fine.height, out.height);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      std::array<float, 3> sum{}, plain{};
-      float opaque = 0;
-      for (int j = 0; j < rows[y].count; ++j)
-        for (int i = 0; i < columns[x].count; ++i) {
-          const std::uint8_t* p = fine.at(columns[x].first + i, rows[y].first + j);
-          const float weight = rows[y].weight[j] * columns[x].weight[i];
-          const float alpha = fine.alpha_at(columns[x].first + i, rows[y].first + j);
-          opaque += weight * alpha;
-          for (int c = 0; c < 3; ++c) {
-            plain[c] += weight * to_linear(p[c]);
-            sum[c] += weight * alpha * to_linear(p[c]);
-          }
-        }
-      const bool is_opaque = fine.alpha.empty() || !(opaque > 0);
-      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = to_srgb(is_opaque ? plain[c] : sum[c] / opaque);
-      if (!out.alpha.empty())
-        out.alpha[static_cast<std::size_t>(y) * out.width + x] =
-            static_cast<std::uint8_t>(255 * opaque + 0.5f);
-    }
-  return out;
-}
-
 std::shared_ptr<const Pyramid> build(Raster raster) {
   auto pyramid = std::make_shared<Pyramid>();
   pyramid->levels.push_back(std::move(raster));

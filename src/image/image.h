@@ -31,6 +31,10 @@ struct Raster {
   }
 };
 
+/// Half as wide and high, averaged in linear light; one pixel at least. What is transparent has no
+/// part in the colour, unless all of a pixel is.
+Raster halve(const Raster& fine);
+
 enum class ImageFormat { kJpeg, kWebp, kPng, kKtx2 };
 
 /// Whether the program basisu is on the PATH.

@@ -245,21 +245,29 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
+/// What tells that a file is a place or a piece of one, or nothing. Small ones are not read for it,
+/// others the way up that they seem to stand.
+std::string doubt(const InputFile& file, ReadOptions read) {
+  if (is_tile_format(file.path)) return "is a tile of a scene by its format";
+  std::error_code error;
+  if (std::filesystem::file_size(file.path, error) < kLeastScene || error) return "";
+  if (read.up == Up::kUnsaid) read.up = Up::kAuto;
+  std::string why;
+  try {
+    for (const Source& s : read_file(file, read))
+      if (why.empty()) why = looks_like_scene(s);
+  } catch (const std::exception&) {
+    return "";  // whoever reads it for the work tells of it
+  }
+  return why;
+}
+
 /// Meshes that are taken for buildings since nothing says that they are scenes: a failure of each
-/// that looks like one, though it is built. Small files are not read again for it.
+/// that looks like one, though it is built.
 void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
   std::vector<std::string> why(inventory.files.size());
-  parallel_for(inventory.files.size(), [&](std::size_t i) {
-    const InputFile& file = inventory.files[i];
-    std::error_code error;
-    if (std::filesystem::file_size(file.path, error) < kLeastScene || error) return;
-    try {
-      for (const Source& s : read_file(file, read))
-        if (why[i].empty()) why[i] = looks_like_scene(s);
-    } catch (const std::exception&) {
-      return;  // whoever reads it for the work tells of it
-    }
-  });
+  parallel_for(inventory.files.size(),
+               [&](std::size_t i) { why[i] = doubt(inventory.files[i], read); });
   for (std::size_t i = 0; i < why.size(); ++i)
     if (!why[i].empty())
       inventory.failures.push_back(

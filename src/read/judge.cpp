@@ -18,6 +18,8 @@ constexpr double kSteep = 0.2, kFlat = 0.98;  // 12 degrees: above noise, below 
 constexpr double kLeastOverhang = 0.04;       // of the surface, read z up, before y is thought of
 constexpr double kBalance = 0.35;        // of what slopes; 0.5 on a side, 0.2 on airborne roofs
 constexpr double kOverhangRatio = 0.25;  // what may slope downward read y up, of that
+constexpr double kOneSided = 0.6;        // of the area, as one vector: no house faces one way …
+constexpr double kAlongAxis = 0.94;      // … along an axis, to 20 degrees
 constexpr double kDegreeExtent = 1;      // no scene is larger in degrees
 constexpr double kNeedle = 200;          // height over width: no mast has more; at 0,0 …
 constexpr double kSureNeedle = 1000;     // … even more is asked for
@@ -32,9 +34,11 @@ struct Facts {
   Box box;
   double area = 0;
   Vec3 up = Vec3::Zero(), down = Vec3::Zero();  // S+ and S− along each axis
+  Vec3 facing = Vec3::Zero();                   // normals times areas
 
   void add(const Vec3& normal, double weight) {
     area += weight;
+    facing += weight * normal;
     for (int k = 0; k < 3; ++k) {
       const double steepness = std::abs(normal[k]);
       if (steepness > kSteep && steepness < kFlat) (normal[k] > 0 ? up : down)[k] += weight;
@@ -109,6 +113,13 @@ bool is_contradicted(const Facts& facts, int up, int other) {
          facts.overhang(other) < kOverhangRatio * over;
 }
 
+/// A sheet that faces the way that is up where the content of a glTF is z up: terrain on its side.
+/// A house has walls all round, and a roof over them.
+bool is_sheet_on_its_side(const Facts& facts) {
+  const double length = facts.facing.norm();
+  return length > kOneSided * facts.area && facts.facing.y() < -kAlongAxis * length;
+}
+
 /// Do the faces tell that y is up (1), z (−1), or nothing (0)?
 int slopes_say_y(const Facts& facts) {
   if (!(facts.area > 0)) return 0;
@@ -122,9 +133,12 @@ int slopes_say_y(const Facts& facts) {
 int judge_turned_axis(const Facts& facts, const ReadOptions& options, Reading& how) {
   how.is_turned_back = options.up == Up::kZ;
   if (how.is_turned_back) return 1;
-  if (options.up == Up::kY || slopes_say_y(facts) <= 0) return 2;
+  const bool is_sheet = is_sheet_on_its_side(facts);
+  if (options.up == Up::kY || (slopes_say_y(facts) <= 0 && !is_sheet)) return 2;
   const std::string why =
-      "read y up, as glTF is, a large part of its faces hangs over; read z up, next to none does";
+      is_sheet ? "read y up, as glTF is, it is a sheet that faces sideways; read z up, it faces up"
+               : "read y up, as glTF is, a large part of its faces hangs over; read z up, next to "
+                 "none does";
   how.is_turned_back = options.up == Up::kAuto;
   how.doubts.push_back(how.is_turned_back
                            ? "taken as z up: " + why + "; --up y reads it as it stands"

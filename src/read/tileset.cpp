@@ -401,6 +401,10 @@ bool is_tiled_scene(const std::string& input, std::string& why) {
   return false;
 }
 
+bool is_tile_format(const std::string& path) {
+  return mesh_io::lower(fs::path(path).extension().string()) == ".b3dm";
+}
+
 TileTree list_tiles(const std::string& input, const ReadOptions& options) {
   std::error_code error;
   fs::path file = input;

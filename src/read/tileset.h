@@ -38,6 +38,9 @@ std::string safe_name(const std::string& name);
 /// with one, or one with meshes in Data/Tile_*/. `why` says what tells it.
 bool is_tiled_scene(const std::string& input, std::string& why);
 
+/// Whether a file is a tile of 3D Tiles by its format, whatever it shows: b3dm.
+bool is_tile_format(const std::string& path);
+
 /// 3D Tiles 1.0 and 1.1: external tilesets, transforms, content.url and content.uri, contents,
 /// `content: null`, implicit tiling, asset.gltfUpAxis. What lies outside the folder of the tileset
 /// that is named, and what leads back to itself, are failures of their own. Of another folder, or a

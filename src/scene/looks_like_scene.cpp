@@ -58,6 +58,34 @@ std::vector<double> groups_of(const HeightMap& map, const SceneClasses& classes)
   return areas;
 }
 
+/// Shares of the cells on the border of what is covered.
+struct Rim {
+  double building = 0, ground = 0;
+};
+
+Rim rim_of(const HeightMap& map, const SceneClasses& classes) {
+  const auto is_open = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= map.width || y >= map.height ||
+           classes.of_cell[map.at(x, y)] == SceneClass::kNothing;
+  };
+  Rim rim;
+  double cells = 0;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      if (is_open(x, y) ||
+          !(is_open(x - 1, y) || is_open(x + 1, y) || is_open(x, y - 1) || is_open(x, y + 1)))
+        continue;
+      cells += 1;
+      rim.building += classes.of_cell[map.at(x, y)] == SceneClass::kBuilding;
+      rim.ground += classes.of_cell[map.at(x, y)] == SceneClass::kGround;
+    }
+  return {rim.building / std::max(cells, 1.0), rim.ground / std::max(cells, 1.0)};
+}
+
+std::string percent(double share) {
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+}
+
 }  // namespace
 
 std::string looks_like_scene(const Source& source) {
@@ -70,15 +98,23 @@ std::string looks_like_scene(const Source& source) {
   const auto count = [&](SceneClass c) {
     return static_cast<double>(std::count(classes.of_cell.begin(), classes.of_cell.end(), c));
   };
-  const double covered = static_cast<double>(map.size()) - count(SceneClass::kNothing);
-  const double ground = count(SceneClass::kGround) / std::max(covered, 1.0);
+  const double covered =
+      std::max(static_cast<double>(map.size()) - count(SceneClass::kNothing), 1.0);
+  const double ground = count(SceneClass::kGround) / covered;
   const std::vector<double> groups = groups_of(map, classes);
   const auto houses =
       std::count_if(groups.begin(), groups.end(), [](double area) { return area >= kLeastHouse; });
-  if (ground < kLeastGround || houses < kLeastHouses) return "";
-  return "looks like a scene: " + std::to_string(houses) +
-         " buildings stand apart on terrain that takes " +
-         std::to_string(static_cast<int>(std::lround(100 * ground))) + " % of its plan";
+  if (ground >= kLeastGround && houses >= kLeastHouses)
+    return "looks like a scene: " + std::to_string(houses) +
+           " buildings stand apart on terrain that takes " + percent(ground) + " of its plan";
+  if (ground >= kBareGround && houses == 0)
+    return "looks like a piece of terrain: it takes " + percent(ground) +
+           " of its plan, and no building stands on it";
+  const Rim rim = rim_of(map, classes);
+  const bool is_rectangle = covered >= kFilled * static_cast<double>(map.size());
+  if (is_rectangle && std::min(rim.ground, ground) >= kGroundAtRim && rim.building >= kCutOff)
+    return "looks like a piece of a scene: its border cuts through terrain and buildings";
+  return "";
 }
 
 }  // namespace colod

@@ -7,8 +7,8 @@
 
 namespace colod {
 
-/// What tells that a mesh is a place with terrain and several buildings, for a message; empty: it
-/// is a building, drawn, too small to tell, or no mesh. O(cells of its plan).
+/// What tells that a mesh is a place with terrain and several buildings, or a piece of one, for a
+/// message; empty: it is a building, drawn, too small to tell, or no mesh. O(cells of its plan).
 std::string looks_like_scene(const Source& source);
 
 }  // namespace colod

@@ -142,5 +142,9 @@ constexpr double kLeastGround = 0.3;  // of the plan
 constexpr double kLeastHouse = 30;    // m²: a garage is no second building
 constexpr int kLeastHouses = 3;       // that stand apart: two may be a house and its barn
 constexpr int kReach = 5;             // cells: 2 m between roofs is no gap
+constexpr double kBareGround = 0.75;  // of the plan, where no building stands
+constexpr double kFilled = 0.8;       // of its box that a tile covers; cut-outs 0.75 at most
+constexpr double kGroundAtRim = 0.2;  // of plan and border: a building without plot has none
+constexpr double kCutOff = 0.02;      // of the border, where a plot has no building at all
 
 }  // namespace colod::parameters::whole_place

@@ -371,6 +371,33 @@ TEST_CASE("a place that is given as one mesh is told of, and built as one buildi
   CHECK(told.log.find("looks like a scene") == std::string::npos);
 }
 
+TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain without a building") {
+  const TempFolder folder;
+  const std::string kind = GENERATE("cut", "bare", "whole", "on its side", "b3dm");
+  INFO(kind);
+  std::vector<Box> houses = {{{-5, 20, 0}, {12, 34, 6}}, {{40, 30, 0}, {52, 44, 7}}};
+  if (kind != "cut") houses.erase(houses.begin());
+  if (kind == "bare" || kind == "on its side") houses.clear();
+  Mesh place = terrain_with_boxes(70, 1, houses);
+  for (Vec3& p : place.vertices)  // as what was measured: nothing quite level or upright
+    p += Vec3(0.01 * p.z(), 0.013 * p.z(), 0.02 * p.x() + 0.1 * std::sin(p.y() / 5));
+  std::string mesh, says = "its border cuts through terrain and buildings";
+  if (kind == "bare" || kind == "on its side") says = "no building stands on it";
+  if (kind == "b3dm") {
+    mesh = folder.write("place.b3dm", b3dm_of(glb_of(y_up(place))));
+    says = "is a tile of a scene by its format";
+  } else {
+    mesh = kind == "on its side" ? folder.write("place.glb", glb_of(place))
+                                 : folder.write("place.obj", obj_text(place));
+  }
+  const Run run = build(folder, mesh);
+  INFO(run.log);
+  const bool is_told = kind != "whole";
+  CHECK((run.log.find(says) != std::string::npos) == is_told);
+  CHECK((run.code != 0) == is_told);
+  CHECK((run.log.find("looks z up") != std::string::npos) == (kind == "on its side"));
+}
+
 TEST_CASE("kill -9 during any stage of a scene: the same command goes on, the bytes are the same") {
   const TempFolder folder;
   write_row(folder);

@@ -186,6 +186,34 @@ TEST_CASE(
   CHECK(groups == 1);
 }
 
+TEST_CASE("atlases of a group that do not fit into one are halved until they do") {
+  std::vector<ExportBuilding> buildings;
+  for (const ExportBuilding& b : street(6)) buildings.push_back(dressed(b));
+  const int largest =
+      GENERATE(512, 128, 64);  // six of 64 texels: all fit, half as large, a quarter
+  INFO(largest);
+  TilesOptions options;
+  options.largest_texture = largest;
+  int shared = 0;
+  for (const Encoded& file : encode_tileset(buildings, options)) {
+    if (!file.path.ends_with(".glb")) continue;
+    const Glb glb = parse_glb(file.bytes);
+    if (!glb.json.contains("images")) continue;
+    if (glb.json["extensions"]["EXT_structural_metadata"]["propertyTables"][0]["count"] != 6)
+      continue;
+    ++shared;
+    const TemporaryFolder folder;
+    const Source s = written(folder, {{"tile.glb", file.bytes}});
+    const ImageCache images(std::size_t{1} << 28);
+    const ImageCache::Facts facts = images.facts(s.look.images.at(0));
+    CHECK(facts.width <= largest);
+    CHECK(facts.height <= largest);
+    CHECK(facts.width * facts.height >= std::min(6 * kSide * kSide, largest * largest / 4));
+    CHECK(std::abs(shade(s) - 50) <= 1);
+  }
+  CHECK(shared == 1);
+}
+
 TEST_CASE("an engine's image has sides that are powers of two, an OBJ names its material") {
   const TemporaryFolder folder;
   ExportBuilding house = dressed(three_layers("house", kOrigin));
