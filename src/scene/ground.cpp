@@ -46,13 +46,14 @@ struct Raster {
   }
 };
 
-/// Calls visit(cell, height) at points of the face closer together than cells.
-template <typename Visit>
+/// Calls visit(cell, height) at points of the face closer together than cells in so many
+/// dimensions: 2, the plan, or 3.
+template <int kDimensions, typename Visit>
 void sample_face(const Mesh& mesh, const Face& f, const Raster& r, const Visit& visit) {
   constexpr int kMostSteps = 4000;
   const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
-  const double longest =
-      std::max({(b - a).head<2>().norm(), (c - b).head<2>().norm(), (a - c).head<2>().norm()});
+  const auto length = [](const Vec3& side) { return side.head<kDimensions>().norm(); };
+  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
   if (!std::isfinite(longest)) return;
   const int n = std::clamp(static_cast<int>(std::ceil(2 * longest / r.cell)), 1, kMostSteps);
   for (int i = 0; i <= n; ++i)
@@ -79,7 +80,7 @@ Raster rasterize(const Mesh& mesh) {
   r.top.assign(r.size(), -kInfinity);
   r.low.assign(r.size(), kInfinity);
   for (const Face& f : mesh.faces)
-    sample_face(mesh, f, r, [&](int c, double z) {
+    sample_face<2>(mesh, f, r, [&](int c, double z) {
       r.top[c] = std::max(r.top[c], z);
       r.low[c] = std::min(r.low[c], z);
     });
@@ -167,7 +168,7 @@ bool has_walls(const Mesh& mesh, const Raster& r, const std::vector<double>& h,
                const std::vector<char>& is_built) {
   std::vector<double> foot(r.size(), kInfinity);  // metres above the ground, itself not
   for (const Face& f : mesh.faces)
-    sample_face(mesh, f, r, [&](int c, double z) {
+    sample_face<3>(mesh, f, r, [&](int c, double z) {
       if (z > h[c] + kGroundLayer) foot[c] = std::min(foot[c], z - h[c]);
     });
   const int reach = static_cast<int>(std::ceil(kReach / r.cell));

@@ -158,3 +158,27 @@ TEST_CASE("a plot of any size is ground, also with a skirt and a plate below") {
       CHECK(surface_area(s.mesh) == Approx(surface_area(house())).epsilon(0.1));
     }
 }
+
+TEST_CASE("walls that come down in high narrow faces come down") {
+  for (const double height : {4.0, 7.0, 25.0})
+    for (const double width : {0.2, 1.0}) {
+      INFO(height << " m high, in strips of " << width << " m");
+      const int strips = static_cast<int>(std::lround(12 / width));
+      Mesh tower;
+      const std::array<Vec2, 5> corners = {Vec2{0, 0}, {12, 0}, {12, 12}, {0, 12}, {0, 0}};
+      for (std::size_t side = 0; side < 4; ++side)
+        for (int i = 0; i < strips; ++i) {
+          const Vec2 step = (corners[side + 1] - corners[side]) / strips;
+          const Vec2 a = corners[side] + i * step, b = a + step;
+          const int v = static_cast<int>(tower.vertices.size());
+          for (const Vec3& p : {Vec3(a.x(), a.y(), 0), Vec3(b.x(), b.y(), 0),
+                                Vec3(b.x(), b.y(), height), Vec3(a.x(), a.y(), height)})
+            tower.vertices.push_back(p);
+          tower.faces.push_back({v, v + 1, v + 2}), tower.faces.push_back({v, v + 2, v + 3});
+        }
+      tower = test::join(tower, moved(terrain(0, 0, 12, 12), {0, 0, height}));
+      const Source s = separated(test::join(tower, terrain(-24, -24, 40, 40)));
+      REQUIRE(s.left_out.size() == 1);
+      CHECK(surface_area(s.mesh) == Approx(surface_area(tower)).epsilon(0.1));
+    }
+}
