@@ -31,9 +31,13 @@ struct LevelLook {
                                           ///< empty: none
   int width = 0, height = 0;              ///< texels, multiples of 4
   ImageFormat format = ImageFormat::kJpeg;
-  int quality = 85;               ///< of images that are made of this one
-  bool has_fallback = false;      ///< whether they have one
-  Raster raster;                  ///< its pixels; empty where the encoded image alone is kept
+  int quality = 85;           ///< of images that are made of this one
+  bool has_fallback = false;  ///< whether they have one
+  Raster raster;              ///< its pixels; empty where the encoded image alone is kept
+  /// A tangent-space normal map beside it, as glTF has them: a PNG, and its pixels. Empty: none;
+  /// the look is then shown as it is, without light.
+  std::string normals;
+  Raster normal_raster;
   std::vector<Rgb> facet_colors;  ///< per facet, for where no texture is; empty: none
 
   bool has_texture() const { return !uvs.empty(); }
@@ -42,7 +46,7 @@ struct LevelLook {
     image = encode_image(pixels, format, quality);
     if (has_fallback) fallback = encode_image(pixels, ImageFormat::kJpeg, quality);
   }
-  std::size_t bytes() const { return image.size() + fallback.size(); }
+  std::size_t bytes() const { return image.size() + fallback.size() + normals.size(); }
 };
 
 /// A mesh of one building as exporters see it: one layer, or several that are alike. Coordinates:

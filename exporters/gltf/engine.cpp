@@ -72,23 +72,30 @@ Json level_json(const ExportBuilding& building, std::size_t lod, const ExportLev
 
 int power_of_two(int n) { return n <= 4 ? 4 : 2 * power_of_two((n + 1) / 2); }
 
+/// Its pixels in the upper left corner, its last ones beyond.
+Raster extended(const Raster& image, int width, int height) {
+  Raster out(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      std::copy_n(image.at(std::min(x, image.width - 1), std::min(y, image.height - 1)), 3,
+                  out.at(x, y));
+  return out;
+}
+
 /// The level's look with an image whose sides are powers of two, as engines want them for their mip
-/// chains and texture compression: its pixels in the upper left corner, its last ones beyond.
+/// chains and texture compression.
 LevelLook squared(const LevelLook& look) {
   if (!look.has_texture()) return look;
   const int width = power_of_two(look.width), height = power_of_two(look.height);
   LevelLook out = look;
   out.width = width, out.height = height;
-  Raster raster(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      std::copy_n(look.raster.at(std::min(x, look.width - 1), std::min(y, look.height - 1)), 3,
-                  raster.at(x, y));
   const Vec2f scale(static_cast<float>(look.width) / static_cast<float>(width),
                     static_cast<float>(look.height) / static_cast<float>(height));
   for (auto& corners : out.uvs)
     for (Vec2f& uv : corners) uv = uv.cwiseProduct(scale);
-  out.encode(raster);
+  out.encode(extended(look.raster, width, height));
+  if (!look.normals.empty())
+    out.normals = encode_image(extended(look.normal_raster, width, height), ImageFormat::kPng, 0);
   return out;
 }
 

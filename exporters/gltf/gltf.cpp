@@ -304,17 +304,21 @@ Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const Quantizat
 
 namespace {
 
+Json dull(const std::string& name) {
+  return {{"name", name},
+          {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}};
+}
+
 /// A material of baked light.
-Json unlit(const std::string& name) {
-  Json material = {{"name", name},
-                   {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}};
+Json unlit(GltfDocument& document, const std::string& name) {
+  name_extension(document.json["extensionsUsed"], "KHR_materials_unlit");
+  Json material = dull(name);
   material["extensions"]["KHR_materials_unlit"] = Json::object();
   return material;
 }
 
 /// Its number.
 int add_material(GltfDocument& document, Json material) {
-  name_extension(document.json["extensionsUsed"], "KHR_materials_unlit");
   Json& all = document.json["materials"];
   if (all.size() == 1 && all[0]["name"] == "plain") all = Json::array();
   if (!all.empty() && all.back() == material) return static_cast<int>(all.size()) - 1;
@@ -362,8 +366,13 @@ int add_texture(GltfDocument& document, const std::string& name, const LevelLook
   }
   json["textures"].push_back(texture);
   const std::size_t number = json["textures"].size() - 1;
-  Json material = unlit(name);
+  Json material = look.normals.empty() ? unlit(document, name) : dull(name);
   material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = number;
+  if (!look.normals.empty()) {
+    json["textures"].push_back(
+        {{"sampler", 0}, {"source", add_image(document, look.normals, ImageFormat::kPng)}});
+    material["normalTexture"]["index"] = json["textures"].size() - 1;
+  }
   return add_material(document, std::move(material));
 }
 
@@ -374,7 +383,7 @@ void set_look(GltfDocument& document, const LevelLook& look, const std::string& 
   if (look.has_texture())
     primitive["material"] = add_texture(document, name, look);
   else if (!look.facet_colors.empty())
-    primitive["material"] = add_material(document, unlit("colors"));
+    primitive["material"] = add_material(document, unlit(document, "colors"));
 }
 
 std::string finish_glb(GltfDocument document) {

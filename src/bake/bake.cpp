@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "charts.h"
 #include "core/error.h"
@@ -16,6 +17,7 @@
 #include "image/look_sampler.h"
 #include "parameters.h"
 #include "probe.h"
+#include "smooth_normals.h"
 
 namespace colod {
 
@@ -82,12 +84,29 @@ std::uint8_t* put(std::uint8_t* pixel, const Light& light) {
   return pixel;
 }
 
-/// Draws one layer's atlas.
+/// A normal map's texel: x right, y up, z outward.
+void put_normal(std::uint8_t* pixel, const Vec3& normal) {
+  for (int c = 0; c < 3; ++c)
+    pixel[c] = static_cast<std::uint8_t>(std::lround(127.5 * (normal[c] + 1)));
+}
+
+/// What a texel shows.
+struct Texel {
+  Light light = Light::Zero();
+  Vec3 normal = Vec3::Zero();  // the source's, not unit; zero: not asked for
+};
+
+/// Draws one layer's atlas. `normals` may be null: no normal map.
 class Painter {
  public:
-  Painter(const Probe& probe, const LookSampler& sampler, const ImageCache& cache,
-          const PolygonMesh& mesh, const BakeOptions& options)
-      : probe_(probe), sampler_(sampler), cache_(cache), mesh_(mesh), reach_(options.reach) {
+  Painter(const Probe& probe, const LookSampler& sampler, const SmoothNormals* normals,
+          const ImageCache& cache, const PolygonMesh& mesh, const BakeOptions& options)
+      : probe_(probe),
+        sampler_(sampler),
+        normals_(normals),
+        cache_(cache),
+        mesh_(mesh),
+        reach_(options.reach) {
     charts_ = find_charts(mesh);
     atlas_ = pack_charts(charts_, std::max(options.texel, sampler.texel()), options.largest);
     if (atlas_.width == 0)
@@ -106,9 +125,10 @@ class Painter {
     BakedTexture out;
     out.image = Raster(atlas_.width, atlas_.height);
     is_known_.assign(out.image.rgb.size() / 3, 0);
+    if (normals_) out.normals = flat_normals();
     const std::vector<Task> tasks = list_tasks();
     std::vector<Tally> tallies(tasks.size());
-    parallel_for(tasks.size(), [&](std::size_t i) { draw(tasks[i], out.image, tallies[i]); });
+    parallel_for(tasks.size(), [&](std::size_t i) { draw(tasks[i], out, tallies[i]); });
     std::vector<Tally> of_chart(charts_.size());
     Tally total;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -122,6 +142,12 @@ class Painter {
   }
 
  private:
+  Raster flat_normals() const {
+    Raster flat(atlas_.width, atlas_.height);
+    for (std::size_t i = 0; i < flat.rgb.size(); i += 3) put_normal(&flat.rgb[i], Vec3::UnitZ());
+    return flat;
+  }
+
   std::vector<Task> list_tasks() const {
     std::vector<Task> tasks;
     for (std::size_t c = 0; c < charts_.size(); ++c) {
@@ -188,7 +214,14 @@ class Painter {
     return owner;
   }
 
-  void draw(const Task& task, Raster& image, Tally& tally) {
+  /// How a normal stands on a chart; what turns away from it, as on a reveal, lies in its plane.
+  static Vec3 on_chart(const Chart& chart, const Vec3& normal) {
+    const Vec3 own(normal.dot(chart.right), -normal.dot(chart.down),
+                   std::max(0.0, normal.dot(chart.normal)));
+    return own.norm() > 0 ? own.normalized() : Vec3(Vec3::UnitZ());
+  }
+
+  void draw(const Task& task, BakedTexture& out, Tally& tally) {
     const Window& w = task.window;
     const std::vector<Corners> triangles = triangles_near(task);
     const std::vector<int> owner = owners(w, triangles);
@@ -200,23 +233,26 @@ class Painter {
         const Vec2 corner(w.x + x, w.y + y);
         const bool is_inside =
             triangles[static_cast<std::size_t>(own)].holds(corner + Vec2::Constant(0.5));
-        Light light = Light::Zero();
-        const Finding how = look(task.chart, corner, triangles, own, lens, light);
+        Texel texel;
+        const Finding how = look(task.chart, corner, triangles, own, lens, texel);
         if (how != Finding::kNone) {
-          put(image.at(w.x + x, w.y + y), light);
-          is_known_[static_cast<std::size_t>(w.y + y) * image.width + w.x + x] = 1;
+          put(out.image.at(w.x + x, w.y + y), texel.light);
+          is_known_[static_cast<std::size_t>(w.y + y) * out.image.width + w.x + x] = 1;
+          if (normals_)
+            put_normal(out.normals.at(w.x + x, w.y + y),
+                       on_chart(charts_[static_cast<std::size_t>(task.chart)], texel.normal));
         }
         if (!is_inside) continue;
         (how == Finding::kSeen      ? tally.seen
          : how == Finding::kNearest ? tally.nearest
                                     : tally.missing) += 1;
-        if (how == Finding::kSeen) tally.light += light.cast<double>();
+        if (how == Finding::kSeen) tally.light += texel.light.cast<double>();
       }
   }
 
   /// The mean of a texel's samples; each lies on the chart.
   Finding look(int number, const Vec2& corner, const std::vector<Corners>& triangles, int own,
-               Lens& lens, Light& mean) const {
+               Lens& lens, Texel& mean) const {
     const auto chart = static_cast<std::size_t>(number);
     const PackedRect& rect = atlas_.rects[chart];
     const Vec2 begin(rect.x + kGutter, rect.y + kGutter);
@@ -231,11 +267,12 @@ class Painter {
         const Found place = probe_.find(charts_[chart].lift((at - begin) * atlas_.texel),
                                         charts_[chart].normal, reach_, holes_in(sampler_, lens));
         if (place.how == Finding::kNone) continue;
-        mean += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
+        mean.light += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
+        if (normals_) mean.normal += normals_->at(place.face, place.point);
         ++found, seen += place.how == Finding::kSeen;
       }
     if (found == 0) return Finding::kNone;
-    mean /= static_cast<float>(found);
+    mean.light /= static_cast<float>(found);
     return 2 * seen >= found ? Finding::kSeen : Finding::kNearest;
   }
 
@@ -316,6 +353,7 @@ class Painter {
 
   const Probe& probe_;
   const LookSampler& sampler_;
+  const SmoothNormals* normals_;
   const ImageCache& cache_;
   const PolygonMesh& mesh_;
   double reach_;
@@ -331,9 +369,10 @@ struct Baker::Impl {
   LookSampler sampler;
   Probe probe;
   const ImageCache& cache;
+  const Mesh& mesh;
 
-  Impl(const Mesh& mesh, const Appearance& look, const ImageCache& images, Sides sides)
-      : sampler(mesh, look, images), probe(mesh, sides), cache(images) {}
+  Impl(const Mesh& source, const Appearance& look, const ImageCache& images, Sides sides)
+      : sampler(source, look, images), probe(source, sides), cache(images), mesh(source) {}
 };
 
 Baker::Baker(const Mesh& source, const Appearance& look, const ImageCache& cache, Sides sides)
@@ -346,7 +385,11 @@ const std::vector<std::string>& Baker::losses() const { return impl_->sampler.lo
 double Baker::source_texel() const { return impl_->sampler.texel(); }
 
 BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) const {
-  return Painter(impl_->probe, impl_->sampler, impl_->cache, mesh, options).paint();
+  std::optional<SmoothNormals> normals;
+  if (options.has_normals) normals.emplace(impl_->mesh);
+  return Painter(impl_->probe, impl_->sampler, normals ? &*normals : nullptr, impl_->cache, mesh,
+                 options)
+      .paint();
 }
 
 namespace {

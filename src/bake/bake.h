@@ -18,6 +18,7 @@ struct BakeOptions {
   int largest = 4096;  ///< texels a side of the atlas
   double reach = 0.5;  ///< metres, along a facet's normal and about it, within which the source is
                        ///< looked for
+  bool has_normals = false;  ///< a normal map, too
 };
 
 /// What a texture is, and where its texels come from.
@@ -33,6 +34,9 @@ struct BakeFacts {
 
 struct BakedTexture {
   Raster image;
+  /// As large as the image, or empty: how the source is turned against the facet, x right, y up and
+  /// z outward on the chart, −1..1 as 0..255; outward where nothing is known.
+  Raster normals;
   std::vector<std::array<Vec2f, 3>>
       uvs;  ///< per triangle of the mesh; 0,0 is the upper left corner
   BakeFacts facts;

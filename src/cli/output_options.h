@@ -79,6 +79,9 @@ inline void add_texture_options(CLI::App& app, TextureOptions& o) {
          "of JPEG and WebP as their libraries count it, of KTX2 as a share of basisu's 255; "
          "default 85")
       ->check(number_between(1, 100));
+  app.add_flag("--normal-map", o.has_normals,
+               "with textures: beside each a normal map (PNG) of what the layer gave away, in GLBs "
+               "of buildings and for engines; these are lit then (no KHR_materials_unlit)");
   app.add_option("--texture-memory", o.memory,
                  "MiB that decoded images may take together, default 512; an image that takes more "
                  "is left out")

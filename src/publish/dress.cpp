@@ -93,7 +93,8 @@ void dress_level(Building& b, const Baker& baker, const TextureOptions& options,
   LevelLook& look = level.look;
   const BakeOptions bake{.texel = std::max(level.gsd, options.texel),
                          .largest = options.largest,
-                         .reach = reach_of(b, level)};
+                         .reach = reach_of(b, level),
+                         .has_normals = options.has_normals};
   BakedTexture baked = baker.bake(level.mesh, bake);
   look.format = options.format;
   look.has_fallback = options.has_fallback;
@@ -102,6 +103,10 @@ void dress_level(Building& b, const Baker& baker, const TextureOptions& options,
   encode_within(allowance.next(), options, look);
   allowance.take(look.bytes());
   look.uvs = std::move(baked.uvs);
+  if (options.has_normals) {
+    look.normals = encode_image(baked.normals, ImageFormat::kPng, options.quality);
+    look.normal_raster = std::move(baked.normals);
+  }
   note(b, level, baked.facts);
 }
 

@@ -129,7 +129,11 @@ void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
 /// Of the levels' pixels only the coarsest's are needed after a building's own files: groups of far
 /// buildings share an atlas.
 void let_go_of_pixels(ExportBuilding& out) {
-  for (std::size_t i = 1; i < out.levels.size(); ++i) out.levels[i].look.raster = {};
+  for (std::size_t i = 0; i < out.levels.size(); ++i) {
+    if (i > 0) out.levels[i].look.raster = {};
+    out.levels[i].look.normals.clear();  // tiles have none
+    out.levels[i].look.normal_raster = {};
+  }
 }
 
 /// A building that cannot be encoded fails alone.

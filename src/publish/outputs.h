@@ -24,7 +24,8 @@ struct TextureOptions {
   ImageFormat format = ImageFormat::kJpeg;
   bool has_fallback = false;  ///< a JPEG beside each image of another format
   int quality = 85;
-  double memory = 512;  ///< MiB that decoded images may take
+  bool has_normals = false;  ///< normal maps, and light in place of KHR_materials_unlit
+  double memory = 512;       ///< MiB that decoded images may take
 };
 
 struct OutputOptions {

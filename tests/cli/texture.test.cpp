@@ -260,6 +260,28 @@ TEST_CASE("looks are measured: a textured house beside itself and beside its lay
   CHECK_THAT(folder.err(), Contains("neither textures nor colours"));
 }
 
+TEST_CASE("normal maps lie beside textures in buildings and for engines, which are lit then") {
+  const Folder folder;
+  folder.write_house("in", kMtl);
+  folder.write("in/wall.png", checkers());
+  const Files plain = folder.built("in", kAll);
+  const Files files = folder.built("in", std::string(kAll) + "--normal-map");
+  int mapped = 0;
+  for (const auto& [name, bytes] : files) {
+    if (!name.ends_with(".glb")) continue;
+    INFO(name);
+    const bool has_map = bytes.find("normalTexture") != bytes.npos;
+    CHECK(has_map == !name.starts_with("tiles/"));
+    CHECK((bytes.find("KHR_materials_unlit") == bytes.npos) == has_map);
+    if (!has_map) CHECK(bytes == plain.at(name));
+    mapped += has_map;
+  }
+  CHECK(mapped >= 2);
+  CHECK(points_of(files.at("buildings/house.layer2.obj")) ==
+        points_of(plain.at("buildings/house.layer2.obj")));
+  CHECK(folder.run("info --check out > faults.json") == 0);
+}
+
 TEST_CASE("WebP is required of clients unless a JPEG stands beside it") {
   const Folder folder;
   folder.write_house("in", kMtl);
