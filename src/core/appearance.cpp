@@ -34,6 +34,19 @@ std::array<float, 256> make_borders() {
   return table;
 }
 
+constexpr std::size_t kSteps = 4096;
+
+/// Entry i: the component of the linear value i / kSteps; those of greater ones are few steps on.
+std::array<std::uint8_t, kSteps> make_starts(const std::array<float, 256>& borders) {
+  std::array<std::uint8_t, kSteps> starts{};
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const float linear = static_cast<float>(i) / kSteps;
+    const auto above = std::upper_bound(borders.begin() + 1, borders.end(), linear);
+    starts[i] = static_cast<std::uint8_t>(above - borders.begin() - 1);
+  }
+  return starts;
+}
+
 }  // namespace
 
 void Appearance::pick(std::span<const int> faces) {
@@ -49,8 +62,12 @@ float to_linear(std::uint8_t srgb) {
 
 std::uint8_t to_srgb(float linear) {
   static const std::array<float, 256> borders = make_borders();
-  const auto above = std::upper_bound(borders.begin() + 1, borders.end(), linear);
-  return static_cast<std::uint8_t>(above - borders.begin() - 1);
+  static const std::array<std::uint8_t, kSteps> starts = make_starts(borders);
+  if (!(linear > 0)) return 0;
+  if (!(linear < 1)) return 255;
+  std::size_t code = starts[static_cast<std::size_t>(linear * kSteps)];
+  while (code < 255 && borders[code + 1] <= linear) ++code;
+  return static_cast<std::uint8_t>(code);
 }
 
 }  // namespace colod
