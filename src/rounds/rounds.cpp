@@ -83,9 +83,12 @@ std::vector<Meridian> meridians_along(const Facets& facets, const std::vector<Be
   return result;
 }
 
-bool supports(const Meridian& m, const Vec2& center, double step) {
-  return std::abs(m.step - step) <= kSameStep * step &&
-         std::abs(cross(m.outward, m.at - center)) <= kOnAxis;
+bool is_alike(const Meridian& m, double step) {
+  return std::abs(m.step - step) <= kSameStep * step;
+}
+
+bool is_about(const Meridian& m, const Vec2& center) {
+  return std::abs(cross(m.outward, m.at - center)) <= kOnAxis;
 }
 
 struct Center {
@@ -94,13 +97,13 @@ struct Center {
   double support = 0;  ///< m²
 };
 
-/// The meridians nearest to one that may be of the same shape.
-std::vector<int> partners_of(const std::vector<Meridian>& all, const Meridian& m) {
+/// Of meridians with the step of one those nearest to it that may be of the same shape.
+std::vector<int> partners_of(const std::vector<Meridian>& alike, const Meridian& m) {
   std::vector<std::pair<double, int>> near;
-  for (std::size_t j = 0; j < all.size(); ++j)
-    if (std::abs(all[j].step - m.step) <= kSameStep * m.step &&
-        std::abs(cross(all[j].outward, m.outward)) > std::sin(0.5 * m.step))
-      near.emplace_back((all[j].at - m.at).squaredNorm(), static_cast<int>(j));
+  const double least = std::sin(0.5 * m.step);
+  for (std::size_t j = 0; j < alike.size(); ++j)
+    if (std::abs(cross(alike[j].outward, m.outward)) > least)
+      near.emplace_back((alike[j].at - m.at).squaredNorm(), static_cast<int>(j));
   const std::size_t count = std::min(kPartners, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
   std::vector<int> partners;
@@ -123,15 +126,21 @@ std::vector<int> sample(const std::vector<Meridian>& all) {
 
 Center vote(const std::vector<Meridian>& all) {
   Center best;
-  for (const int i : sample(all))
-    for (const int j : partners_of(all, all[i])) {
-      const Meridian &a = all[i], &b = all[j];
+  std::vector<Meridian> alike;  // most meridians of a scan have another step
+  for (const int i : sample(all)) {
+    const Meridian& a = all[static_cast<std::size_t>(i)];
+    alike.clear();
+    for (const Meridian& m : all)
+      if (is_alike(m, a.step)) alike.push_back(m);
+    for (const int j : partners_of(alike, a)) {
+      const Meridian& b = alike[static_cast<std::size_t>(j)];
       const double t = cross(b.at - a.at, b.outward) / cross(a.outward, b.outward);
       Center trial{a.at + t * a.outward, a.step, 0};
-      for (const Meridian& m : all)
-        if (supports(m, trial.at, trial.step)) trial.support += m.weight;
+      for (const Meridian& m : alike)
+        if (is_about(m, trial.at)) trial.support += m.weight;
       if (trial.support > best.support) best = trial;
     }
+  }
   return best;
 }
 
@@ -206,7 +215,7 @@ RoundShape around(const Axes& axes, const std::vector<Meridian>& all, std::vecto
   for (int round = 0; round < 2; ++round) {
     lines.clear();
     for (const Meridian& m : all)
-      if (supports(m, center.at, center.step)) lines.push_back(m);
+      if (is_alike(m, center.step) && is_about(m, center.at)) lines.push_back(m);
     if (lines.size() < kLeastMeridians) return shape;
     center.at = meet(lines);
     if (!center.at.allFinite()) return shape;

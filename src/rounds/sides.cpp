@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace colod::rounds {
@@ -33,33 +32,44 @@ int column_of(const RoundShape& shape, const Vec3& normal) {
   return unwrapped < shape.columns ? unwrapped : -1;
 }
 
+/// What lines are made of, the same for every tolerance.
+struct Material {
+  std::vector<char> is_founder;            ///< per face
+  std::vector<std::pair<int, int>> faces;  ///< (face, column): founders first, then by size
+  std::vector<Vec3> directions;            ///< per column
+};
+
+Material gather(const Facets& facets, const std::vector<int>& founders, const RoundShape& shape) {
+  Material m;
+  m.is_founder.assign(facets.normal.size(), 0);
+  for (const int f : founders) m.is_founder[f] = 1;
+  for (int f = 0; f < static_cast<int>(facets.normal.size()); ++f) {
+    if (facets.is_taken[f] || facets.area[f] <= 0) continue;
+    const int column = column_of(shape, facets.normal[f]);
+    if (column >= 0) m.faces.emplace_back(f, column);
+  }
+  std::stable_sort(m.faces.begin(), m.faces.end(), [&](const auto& a, const auto& b) {
+    return std::make_pair(-m.is_founder[a.first], -facets.area[a.first]) <
+           std::make_pair(-m.is_founder[b.first], -facets.area[b.first]);
+  });
+  for (int k = 0; k < shape.columns; ++k) m.directions.push_back(shape.direction(k));
+  return m;
+}
+
 class Sorter {
  public:
-  Sorter(const Facets& facets, const std::vector<int>& founders, const RoundShape& shape,
-         double exact)
-      : facets_(facets), shape_(shape), exact_(exact), is_founder_(facets.normal.size(), 0) {
-    for (const int f : founders) is_founder_[f] = 1;
-  }
+  Sorter(const Facets& facets, const Material& material, const RoundShape& shape, double exact)
+      : facets_(facets), material_(material), shape_(shape), exact_(exact) {}
 
   /// Large faces found the lines that small ones join.
   std::vector<Line> lines() {
-    std::vector<int> order(facets_.normal.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return std::make_pair(-is_founder_[a], -facets_.area[a]) <
-             std::make_pair(-is_founder_[b], -facets_.area[b]);
-    });
-    for (const int f : order) {
-      if (facets_.is_taken[f] || facets_.area[f] <= 0) continue;
-      const int column = column_of(shape_, facets_.normal[f]);
-      if (column >= 0) place(f, column);
-    }
+    for (const auto& [face, column] : material_.faces) place(face, column);
     return std::move(lines_);
   }
 
  private:
   Vec2 turned_back(const Vec3& x, int column) const {
-    return {shape_.direction(column).dot(x), shape_.axis.dot(x)};
+    return {material_.directions[column].dot(x), shape_.axis.dot(x)};
   }
   /// The farthest corner of a face from a line.
   double reach(int face, int column, const Vec2& normal, double offset) const {
@@ -80,7 +90,7 @@ class Sorter {
       if (r < least) least = r, nearest = &line;
     }
     if (!nearest) {
-      if (!is_founder_[face] || lines_.size() == kMostRows) return;
+      if (!material_.is_founder[face] || lines_.size() == kMostRows) return;
       double offset = 0;
       for (const int v : facets_.mesh.faces[face])
         offset += own.dot(turned_back(facets_.mesh.vertices[v] - shape_.center, column)) / 3;
@@ -91,9 +101,9 @@ class Sorter {
   }
 
   const Facets& facets_;
+  const Material& material_;
   const RoundShape& shape_;
   double exact_;
-  std::vector<char> is_founder_;
   std::vector<Line> lines_;
 };
 
@@ -113,10 +123,11 @@ bool is_row(const Line& line, const RoundShape& shape) {
 /// tolerance counts at which hardly fewer faces find a row.
 std::vector<Line> find_lines(const Facets& facets, const std::vector<int>& founders,
                              const RoundShape& shape) {
+  const Material material = gather(facets, founders, shape);
   std::vector<Line> best;
   std::size_t most = 0;
   for (const double exact : {kOffPlane, kOffPlane / 3, kOffPlane / 15}) {
-    std::vector<Line> lines = Sorter(facets, founders, shape, exact).lines();
+    std::vector<Line> lines = Sorter(facets, material, shape, exact).lines();
     std::erase_if(lines, [&](const Line& line) { return !is_row(line, shape); });
     std::size_t faces = 0;
     for (const Line& line : lines) faces += line.faces.size();

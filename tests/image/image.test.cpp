@@ -182,8 +182,7 @@ TEST_CASE("half of the light is not half of the number") {
   for (int i = 0; i < 256; ++i) CHECK(to_srgb(to_linear(static_cast<std::uint8_t>(i))) == i);
   for (int i = 0; i < 255; ++i) {  // the border between two components, in linear light
     const double coded = (i + 0.5) / 255;
-    const double linear =
-        coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+    const double linear = coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
     CHECK(to_srgb(static_cast<float>(linear * (1 - 1e-5))) == i);
     CHECK(to_srgb(static_cast<float>(linear * (1 + 1e-5))) == i + 1);
   }
