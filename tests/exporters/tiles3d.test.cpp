@@ -114,7 +114,7 @@ TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
     Mesh mesh = box_mesh({-6, -4, 0}, {6, 4, 7});
     for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * p;
     const ExportBuilding b{"box", "", {100, 200, 3}, {{{0}, as_polygons(mesh), 0, 0}}, ""};
-    const StandIn box = stand_in_for(b, 5);
+    const StandInBox box = stand_in_for(b, 5);
     CHECK(box.buildings == std::vector<int>{5});
     CHECK(box.error == Approx(0).margin(1e-5));
     CHECK((box.origin - Vec3(100, 200, 3)).norm() < 1e-6);
@@ -125,7 +125,7 @@ TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
 
 TEST_CASE("no vertex of a building is farther from its stand-in than the error says") {
   const ExportBuilding house = three_layers("house", Vec3::Zero());
-  const StandIn box = stand_in_for(house, 0);
+  const StandInBox box = stand_in_for(house, 0);
   const RayScene scene(mesh_of(box).mesh());
   for (const Vec3& p : house.levels.back().mesh.vertices)
     if (p.z() > 0.1) CHECK(scene.nearest(p - box.origin).distance <= box.error);
@@ -140,18 +140,18 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
   for (ExportLevel& level : buildings[1].levels)
     for (Vec3& p : level.mesh.vertices) p *= 1.5;
   for (const std::string measure : {"visual", "deviation"}) {
-    std::vector<StandIn> boxes;
+    std::vector<StandInBox> boxes;
     for (const ExportBuilding& b : buildings) {
       boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size()),
                                    {.measure = measure, .visual_error = 2, .layer_gsd = {}}));
       CHECK(boxes.back().gsd > 1.15 * b.levels.front().gsd);
     }
-    std::vector<StandIn> alike = boxes;
+    std::vector<StandInBox> alike = boxes;
     agree_on_switch(alike, {.layer_gsd = {0.6, 0.3, 0}});
     agree_on_switch(boxes, {.scope = "building", .layer_gsd = {}});
     std::set<double> own, shared;
-    for (const StandIn& box : boxes) own.insert(box.gsd);
-    for (const StandIn& box : alike) shared.insert(box.gsd);
+    for (const StandInBox& box : boxes) own.insert(box.gsd);
+    for (const StandInBox& box : alike) shared.insert(box.gsd);
     CHECK(own.size() > 1);
     REQUIRE(shared.size() == 1);
     CHECK(*shared.begin() >= *own.begin());
@@ -162,14 +162,14 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
 TEST_CASE("what merging adds to a box counts by its pixels") {
   const std::vector<ExportBuilding> two = {three_layers("a", Vec3::Zero()),
                                            three_layers("b", {40, 0, 0})};
-  const StandIn a = stand_in_for(two[0], 0), b = stand_in_for(two[1], 1);
-  const StandIn merged = merge_stand_ins({a, b}, 1)[0];
+  const StandInBox a = stand_in_for(two[0], 0), b = stand_in_for(two[1], 1);
+  const StandInBox merged = merge_stand_ins({a, b}, 1)[0];
   CHECK(merged.gsd == Approx((merged.error - std::max(a.error, b.error)) / 2));
   CHECK(merged.gsd > std::max(a.gsd, b.gsd));
 }
 
 TEST_CASE("merging stand-ins keeps every building and adds up errors") {
-  std::vector<StandIn> boxes;
+  std::vector<StandInBox> boxes;
   for (const ExportBuilding& b : street(12))
     boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size())));
   const double before = boxes[0].error;
@@ -177,20 +177,20 @@ TEST_CASE("merging stand-ins keeps every building and adds up errors") {
     boxes = merge_stand_ins(std::move(boxes), most);
     CHECK(boxes.size() == most);
     std::vector<int> all;
-    for (const StandIn& box : boxes)
+    for (const StandInBox& box : boxes)
       all.insert(all.end(), box.buildings.begin(), box.buildings.end());
     std::sort(all.begin(), all.end());
     std::vector<int> expected(12);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(all == expected);
-    CHECK(std::max_element(boxes.begin(), boxes.end(), [](const StandIn& a, const StandIn& b) {
+    CHECK(std::max_element(boxes.begin(), boxes.end(), [](const StandInBox& a, const StandInBox& b) {
             return a.error < b.error;
           })->error > before);
   }
 }
 
 TEST_CASE("a stand-in's walls and top face outwards") {
-  const StandIn box{{0}, Vec3::Zero(), 0.3, {3, 2, 5}, 0};
+  const StandInBox box{{0}, Vec3::Zero(), 0.3, {3, 2, 5}, 0};
   const PolygonMesh mesh = mesh_of(box);
   CHECK(mesh.triangles.size() == kStandInTriangles);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
