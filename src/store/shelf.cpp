@@ -20,6 +20,8 @@ constexpr const char* kSchema =
     "CREATE TABLE piece(name TEXT NOT NULL, part TEXT NOT NULL, bytes BLOB NOT NULL, "
     "PRIMARY KEY(name, part))";
 
+enum class Content { kNothing, kShelf, kOther };
+
 }  // namespace
 
 struct Shelf::Impl {
@@ -49,6 +51,18 @@ struct Shelf::Impl {
     Statement s = read("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL");
     return s.step() && s.text() == kSchema && !s.step();
   }
+  /// What is no database at all is something else.
+  Content content() const try {
+    execute("PRAGMA synchronous = NORMAL", Stage::kInput);
+    Statement version = read("PRAGMA user_version");
+    version.step();
+    const std::int64_t found = version.integer();
+    if (found == kFormat && has_own_schema()) return Content::kShelf;
+    Statement tables = read("SELECT 1 FROM sqlite_master");
+    return found == 0 && !tables.step() ? Content::kNothing : Content::kOther;
+  } catch (const Error&) {
+    return Content::kOther;
+  }
 };
 
 Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
@@ -57,15 +71,16 @@ Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
   if (sqlite3_open_v2(path.c_str(), &impl_->db, flags, nullptr) != SQLITE_OK)
     throw Error(is_new_allowed ? Stage::kOutput : Stage::kInput, path,
                 std::string("cannot be opened: ") + sqlite3_errmsg(impl_->db));
-  impl_->execute("PRAGMA synchronous = NORMAL", Stage::kInput);
-  Statement version = impl_->read("PRAGMA user_version");
-  version.step();
-  const std::int64_t found = version.integer();
-  if (found == kFormat && impl_->has_own_schema()) return;
-  Statement tables = impl_->read("SELECT 1 FROM sqlite_master");
-  if (found != 0 || tables.step())
-    throw Error(Stage::kInput, path,
-                "is not what this colod exports of a cell: delete it, and run colod export again");
+  switch (impl_->content()) {
+    case Content::kShelf:
+      return;
+    case Content::kOther:
+      throw Error(Stage::kInput, path,
+                  "is damaged, or not what this colod exports of a cell: delete it, and run colod "
+                  "export again");
+    case Content::kNothing:
+      break;
+  }
   impl_->transaction([&] {
     impl_->execute(kSchema, Stage::kOutput);
     impl_->execute(("PRAGMA user_version = " + std::to_string(kFormat)).c_str(), Stage::kOutput);

@@ -183,9 +183,10 @@ TEST_CASE("merging stand-ins keeps every building and adds up errors") {
     std::vector<int> expected(12);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(all == expected);
-    CHECK(std::max_element(boxes.begin(), boxes.end(), [](const StandInBox& a, const StandInBox& b) {
-            return a.error < b.error;
-          })->error > before);
+    CHECK(
+        std::max_element(boxes.begin(), boxes.end(), [](const StandInBox& a, const StandInBox& b) {
+          return a.error < b.error;
+        })->error > before);
   }
 }
 
@@ -228,6 +229,56 @@ TEST_CASE("at the far end stand at most 5 % of the finest triangles and bytes") 
     if (0.05 * bytes >= kLeastFile) CHECK(root.bytes.size() <= 0.05 * bytes);
     if (0.05 * bytes < 2000)
       CHECK(triangles_of(root) == static_cast<std::size_t>(kStandInTriangles * n));
+  }
+}
+
+TEST_CASE("levels that come cell by cell give the tileset that levels in memory give") {
+  std::vector<ExportBuilding> all = detailed_street(300);
+  for (std::size_t i = 0; i < all.size(); ++i) {  // colours reach up to the root's boxes
+    LevelLook& look = all[i].levels.front().look;
+    look.facet_colors.assign(all[i].levels.front().mesh.facets.size(),
+                             {static_cast<std::uint8_t>(i), 120, 60});
+  }
+  std::vector<Encoded> expected = encode_tileset(all);
+  std::vector<TileOutline> outlines;
+  std::vector<ExportBuilding> bare = all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    outlines.push_back(outline_of(all[i]));
+    for (ExportLevel& level : bare[i].levels) level.mesh = {}, level.look = {};
+  }
+  std::mutex mutex;
+  int there = 0, most = 0;
+  std::vector<Encoded> made;
+  const LevelDepot depot{.get =
+                             [&](int b) {
+                               for (std::size_t k = 0; k < all[b].levels.size(); ++k)
+                                 bare[b].levels[k] = all[b].levels[k];
+                               const std::lock_guard lock(mutex);
+                               most = std::max(most, ++there);
+                             },
+                         .drop =
+                             [&](int b) {
+                               for (ExportLevel& level : bare[b].levels)
+                                 level.mesh = {}, level.look = {};
+                               const std::lock_guard lock(mutex);
+                               --there;
+                             },
+                         .coarsest = [&](int b) { return coarsest_look(all[b].levels.front()); }};
+  const std::vector<Encoded> rest =
+      encode_tileset(bare, outlines, depot, {}, [&](const Encoded& f) { made.push_back(f); });
+  REQUIRE(!made.empty());
+  CHECK(rest.front().path == "tileset.json");
+  CHECK(there == 0);
+  CHECK(most < 256);  // of 300: never all at once
+  made.insert(made.end(), rest.begin(), rest.end());
+  const auto by_path = [](const Encoded& a, const Encoded& b) { return a.path < b.path; };
+  std::sort(made.begin(), made.end(), by_path);
+  std::sort(expected.begin(), expected.end(), by_path);
+  REQUIRE(made.size() == expected.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    INFO(made[i].path);
+    CHECK(made[i].path == expected[i].path);
+    CHECK(made[i].bytes == expected[i].bytes);
   }
 }
 
