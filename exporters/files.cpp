@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 
 #include "core/error.h"
 
@@ -39,6 +40,42 @@ void check_relative(const fs::path& path) {
   if (leaves) fail(path, "not a path below the output folder");
 }
 
+/// A file under another name until it is whole; goes away if it never is.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target)
+      : target_(target),
+        path_(target.string() + ".tmp" + std::to_string(getpid())),
+        out_(std::fopen(path_.c_str(), "wb")) {
+    if (!out_) fail(target_, std::string("cannot be written: ") + std::strerror(errno));
+  }
+  ~Temporary() {
+    if (out_) std::fclose(out_);
+    std::error_code error;
+    if (!is_in_place_) fs::remove(path_, error);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  void append(const std::string& bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size())
+      fail(target_, std::string("cannot be written: ") + std::strerror(errno));
+  }
+  void rename() {
+    const bool is_closed = std::fclose(std::exchange(out_, nullptr)) == 0;
+    if (!is_closed) fail(target_, std::string("cannot be written: ") + std::strerror(errno));
+    std::error_code error;
+    fs::rename(path_, target_, error);
+    if (error) fail(target_, "cannot be put in place: " + error.message());
+    is_in_place_ = true;
+  }
+
+ private:
+  fs::path target_, path_;
+  std::FILE* out_;
+  bool is_in_place_ = false;
+};
+
 }  // namespace
 
 void make_folder(const std::string& folder) {
@@ -52,29 +89,20 @@ void make_folder(const std::string& folder) {
 std::unique_lock<std::mutex> hold_writes() { return std::unique_lock(writing()); }
 
 void write_file(const std::string& folder, const Encoded& file) {
-  check_relative(file.path);
-  const fs::path target = fs::path(folder) / file.path;
+  write_file(folder, file.path, [&](const Append& append) { append(file.bytes); });
+}
+
+void write_file(const std::string& folder, const std::string& path,
+                const std::function<void(const Append&)>& body) {
+  check_relative(path);
+  const fs::path target = fs::path(folder) / path;
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail(target.parent_path(), "the folder cannot be made: " + error.message());
   const std::lock_guard lock(writing());
-  const fs::path temporary = target.string() + ".tmp" + std::to_string(getpid());
-  std::FILE* out = std::fopen(temporary.c_str(), "wb");
-  if (!out) fail(target, std::string("cannot be written: ") + std::strerror(errno));
-  const bool is_written =
-      std::fwrite(file.bytes.data(), 1, file.bytes.size(), out) == file.bytes.size();
-  const int cause = errno;
-  const bool is_closed = std::fclose(out) == 0;
-  if (!is_written || !is_closed) {
-    const std::string why = std::strerror(is_written ? errno : cause);
-    fs::remove(temporary, error);
-    fail(target, "cannot be written: " + why);
-  }
-  fs::rename(temporary, target, error);
-  if (!error) return;
-  const std::string why = error.message();
-  fs::remove(temporary, error);
-  fail(target, "cannot be put in place: " + why);
+  Temporary temporary(target);
+  body([&](const std::string& bytes) { temporary.append(bytes); });
+  temporary.rename();
 }
 
 }  // namespace colod

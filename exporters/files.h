@@ -2,7 +2,9 @@
 // is ever left.
 #pragma once
 
+#include <functional>
 #include <mutex>
+#include <string>
 
 #include "exporter.h"
 
@@ -18,5 +20,11 @@ std::unique_lock<std::mutex> hold_writes();
 /// Thread-safe. Writes `file` below `folder`, making folders as needed. Throws Error{kOutput}
 /// naming the path and the cause.
 void write_file(const std::string& folder, const Encoded& file);
+
+/// The same of a file that is never in memory as a whole: `body` hands over its bytes, piece by
+/// piece. What it throws leaves no file.
+using Append = std::function<void(const std::string& bytes)>;
+void write_file(const std::string& folder, const std::string& path,
+                const std::function<void(const Append&)>& body);
 
 }  // namespace colod

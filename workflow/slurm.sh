@@ -33,4 +33,5 @@ stage() {  # NAME SBATCH-OPTIONS -- ARGUMENTS: a building that failed (exit code
 segment=$(stage segment --array="0-$((shards - 1))" --output="$logs/segment-%a.log" --)
 analyze=$(stage analyze --dependency="afterok:$segment" --kill-on-invalid-dep=yes --output="$logs/analyze.log" --)
 mesh=$(stage mesh --array="0-$((shards - 1))" --dependency="afterok:$analyze" --kill-on-invalid-dep=yes --output="$logs/mesh-%a.log" --)
-stage export --dependency="afterok:$mesh" --kill-on-invalid-dep=yes --output="$logs/export.log" -- -o "$out" "$@"
+export=$(stage export --array="0-$((shards - 1))" --dependency="afterok:$mesh" --kill-on-invalid-dep=yes --output="$logs/export-%a.log" -- -o "$out" "$@")
+stage merge --dependency="afterok:$export" --kill-on-invalid-dep=yes --output="$logs/merge.log" -- -o "$out" "$@"

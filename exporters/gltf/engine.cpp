@@ -130,30 +130,37 @@ std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
   return files;
 }
 
+std::string lods_entry(const ExportBuilding& building, const EngineOptions& options) {
+  const auto levels = levels_of(building);
+  const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
+  const double diameter = bounding_box(levels[0]->mesh.vertices).diagonal();
+  Json entry = {{"name", building.name},
+                {"given_name", shown_name(building)},
+                {"source", building.source},
+                {"pivot", {world.x(), world.y(), world.z()}},
+                {"bounding_sphere_diameter", diameter},
+                {"levels", Json::array()}};
+  for (std::size_t lod = 0; lod < levels.size(); ++lod) {
+    const double rounding = level_grid(*levels[lod], pivot, lod == 0, options).error();
+    Json level = level_json(building, lod, *levels[lod], rounding, diameter, options.switching);
+    if (lod > 0)  // strictly apart, so that importers keep every level
+      level["screen_size"] = std::min(level["screen_size"].get<double>(),
+                                      kFall * entry["levels"].back()["screen_size"].get<double>());
+    entry["levels"].push_back(level);
+  }
+  return entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
                          const EngineOptions& options) {
+  std::vector<std::string> entries;
+  for (const ExportBuilding& b : buildings) entries.push_back(lods_entry(b, options));
+  return encode_lods_json(entries, options);
+}
+
+Encoded encode_lods_json(const std::vector<std::string>& entries, const EngineOptions& options) {
   Json list = Json::array();
-  for (const ExportBuilding& building : buildings) {
-    const auto levels = levels_of(building);
-    const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
-    const double diameter = bounding_box(levels[0]->mesh.vertices).diagonal();
-    Json entry = {{"name", building.name},
-                  {"given_name", shown_name(building)},
-                  {"source", building.source},
-                  {"pivot", {world.x(), world.y(), world.z()}},
-                  {"bounding_sphere_diameter", diameter},
-                  {"levels", Json::array()}};
-    for (std::size_t lod = 0; lod < levels.size(); ++lod) {
-      const double rounding = level_grid(*levels[lod], pivot, lod == 0, options).error();
-      Json level = level_json(building, lod, *levels[lod], rounding, diameter, options.switching);
-      if (lod > 0)  // strictly apart, so that importers keep every level
-        level["screen_size"] =
-            std::min(level["screen_size"].get<double>(),
-                     kFall * entry["levels"].back()["screen_size"].get<double>());
-      entry["levels"].push_back(level);
-    }
-    list.push_back(entry);
-  }
+  for (const std::string& entry : entries) list.push_back(Json::parse(entry));
   Json json;
   json["about"] =
       "LOD0 is the finest. A level is shown from switch_distance (metres) on, where a pixel covers "

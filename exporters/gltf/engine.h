@@ -23,4 +23,10 @@ std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
 Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
                          const EngineOptions& options = {});
 
+/// The same in pieces, for buildings that are not all in memory: one building's entry as JSON text,
+/// and the file of all entries.
+std::string lods_entry(const ExportBuilding& building, const EngineOptions& options = {});
+Encoded encode_lods_json(const std::vector<std::string>& entries,
+                         const EngineOptions& options = {});
+
 }  // namespace colod

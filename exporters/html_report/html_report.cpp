@@ -78,19 +78,37 @@ std::string pictures_json(const std::vector<std::vector<std::string>>& pictures)
   return text + "]";
 }
 
+/// The report as the page has it, building by building: each alone is parsed.
+std::string report_text(Json report, const HtmlReport& r) {
+  Json own = std::move(report["buildings"]);
+  std::string rows;
+  const auto add = [&](Json building) {
+    bound_texts(building);
+    round_numbers(building);
+    rows += (rows.empty() ? "" : ",") + building.dump();
+  };
+  for (Json& building : own) add(std::move(building));
+  for (std::size_t i = 0; i < r.buildings; ++i) add(Json::parse(r.building(i)));
+  report["buildings"] = Json::array();
+  round_numbers(report);
+  std::string text = "{";
+  for (const auto& [key, value] : report.items())
+    text += (text.size() > 1 ? "," : "") + Json(key).dump() + ":" +
+            (key == "buildings" ? "[" + rows + "]" : value.dump());
+  return text + "}";
+}
+
 }  // namespace
 
 Encoded encode_html_report(const HtmlReport& r) {
   Json report = Json::parse(r.report);
-  for (Json& building : report["buildings"]) bound_texts(building);
-  round_numbers(report);
   Json parts = r.parts.empty() ? Json::object() : Json::parse(r.parts);
   parts["colors"] = r.layer_colors;
   round_numbers(parts);
   const std::string_view shell = kHtmlReportShell;
   const std::size_t mark = shell.find(kMark);
   std::string page(shell.substr(0, mark));
-  page += block("report-data", report.dump());
+  page += block("report-data", report_text(std::move(report), r));
   page += block("parts-data", parts.dump());
   page += block("pictures-data", pictures_json(r.pictures));
   page += shell.substr(mark + kMark.size());

@@ -2,6 +2,7 @@
 // outside.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct HtmlReport {
                                                    ///< source, then of each layer; then, where it
                                                    ///< has textures, JPEGs of them; empty: none
   std::vector<std::string> layer_colors;           ///< CSS colours of the layers in the pictures
+  /// Where `report` has no buildings: how many there are, and each one's JSON text.
+  std::size_t buildings = 0;
+  std::function<std::string(std::size_t)> building = {};
 };
 
 /// The page: the shell of exporters/html_report/ (HTML, styles and scripts) and the data, each as a

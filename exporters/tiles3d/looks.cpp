@@ -29,16 +29,16 @@ Rgb color_of(const Sum& sum) {
 }
 
 /// Of a box: what its buildings' coarsest levels show to each side, else their mean.
-std::vector<Rgb> side_colors(const TilePart& part, const std::vector<ExportBuilding>& buildings) {
+std::vector<Rgb> side_colors(const TilePart& part,
+                             const std::function<CoarsestLook(int building)>& coarsest) {
   std::vector<Sum> sides(part.mesh->facets.size(), Sum::Zero());
   Sum all = Sum::Zero();
   for (const int b : part.buildings) {
-    const ExportLevel& level = buildings[static_cast<std::size_t>(b)].levels.front();
-    const Mesh mesh = level.mesh.mesh();
-    for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-      const Vec3 cross = face_cross(mesh, mesh.faces[t]);
-      const auto facet = static_cast<std::size_t>(level.mesh.facet_of_triangle[t]);
-      const Rgb rgb = level.look.facet_colors.empty() ? kPlain : level.look.facet_colors[facet];
+    const CoarsestLook level = coarsest(b);
+    for (std::size_t t = 0; t < level.mesh.faces.size(); ++t) {
+      const Vec3 cross = face_cross(level.mesh, level.mesh.faces[t]);
+      const auto facet = static_cast<std::size_t>(level.facet_of_triangle[t]);
+      const Rgb rgb = level.facet_colors.empty() ? kPlain : level.facet_colors[facet];
       add(all, rgb, 0.5 * cross.norm());
       for (std::size_t s = 0; s < sides.size(); ++s)
         if (part.mesh->facets[s].normal.dot(cross) > kFaces * cross.norm())
@@ -50,17 +50,17 @@ std::vector<Rgb> side_colors(const TilePart& part, const std::vector<ExportBuild
   return colors;
 }
 
-std::vector<Rgb> colors_of(const TilePart& part, const std::vector<ExportBuilding>& buildings) {
-  if (!part.level) return side_colors(part, buildings);
+std::vector<Rgb> level_colors(const TilePart& part) {
   if (!part.level->look.facet_colors.empty()) return part.level->look.facet_colors;
   return std::vector<Rgb>(part.mesh->facets.size(), kPlain);
 }
 
-TileLook colored(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings) {
+TileLook colored(const PlannedTile& tile,
+                 const std::function<std::vector<Rgb>(const TilePart&)>& colors_of) {
   TileLook look;
   for (const TilePart& part : tile.parts) {
     look.parts.emplace_back();
-    look.parts.back().facet_colors = colors_of(part, buildings);
+    look.parts.back().facet_colors = colors_of(part);
   }
   look.whole.facet_colors = {kPlain};  // that there are colours
   return look;
@@ -114,19 +114,18 @@ std::array<int, 2> fit(std::vector<Raster>& images, std::vector<PackedRect>& rec
   }
 }
 
-TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
-                int largest) {
+TileLook shared(const PlannedTile& tile, int largest) {
   std::vector<Raster> images;
   const LevelLook* first = nullptr;
   for (const TilePart& part : tile.parts) {
     const LevelLook& own = part.level->look;
-    if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, buildings);
+    if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, level_colors);
     images.push_back(swatch(own));
     if (own.has_texture() && !first) first = &own;
   }
   std::vector<PackedRect> rects;
   const auto [width, height] = fit(images, rects, largest);
-  if (width == 0) return colored(tile, buildings);
+  if (width == 0) return colored(tile, level_colors);
   TileLook look;
   Raster whole(width, height);
   std::fill(whole.rgb.begin(), whole.rgb.end(), kPlain[0]);
@@ -143,26 +142,26 @@ TileLook shared(const PlannedTile& tile, const std::vector<ExportBuilding>& buil
 
 }  // namespace
 
-TileLook look_of(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
-                 int largest) {
+CoarsestLook coarsest_look(const ExportLevel& coarsest) {
+  return {coarsest.mesh.mesh(), coarsest.mesh.facet_of_triangle, coarsest.look.facet_colors};
+}
+
+TileLook look_of_levels(const PlannedTile& tile, int largest) {
   const auto any = [&](auto&& holds) {
-    return std::any_of(tile.parts.begin(), tile.parts.end(), [&](const TilePart& part) {
-      return std::any_of(part.buildings.begin(), part.buildings.end(), [&](int b) {
-        const ExportBuilding& building = buildings[static_cast<std::size_t>(b)];
-        return holds(part.level ? part.level->look : building.levels.front().look, part);
-      });
-    });
+    return std::any_of(tile.parts.begin(), tile.parts.end(),
+                       [&](const TilePart& part) { return holds(part.level->look); });
   };
-  const bool has_texture = any(
-      [](const LevelLook& look, const TilePart& part) { return part.level && look.has_texture(); });
-  const bool has_colors = any([](const LevelLook& look, const TilePart&) {
-    return look.has_texture() || !look.facet_colors.empty();
-  });
-  if (has_texture && tile.parts.size() == 1)
-    return {{tile.parts[0].level->look}, tile.parts[0].level->look};
-  if (has_texture) return shared(tile, buildings, largest);
-  if (has_colors) return colored(tile, buildings);
+  if (any([](const LevelLook& look) { return look.has_texture(); }))
+    return tile.parts.size() == 1 ? TileLook{{tile.parts[0].level->look}, tile.parts[0].level->look}
+                                  : shared(tile, largest);
+  if (any([](const LevelLook& look) { return !look.facet_colors.empty(); }))
+    return colored(tile, level_colors);
   return {std::vector<LevelLook>(tile.parts.size()), {}};
+}
+
+TileLook look_of_stand_ins(const PlannedTile& tile,
+                           const std::function<CoarsestLook(int building)>& coarsest) {
+  return colored(tile, [&](const TilePart& part) { return side_colors(part, coarsest); });
 }
 
 }  // namespace colod

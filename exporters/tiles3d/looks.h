@@ -2,6 +2,8 @@
 // sides.
 #pragma once
 
+#include <functional>
+
 #include "tree.h"
 
 namespace colod {
@@ -11,10 +13,23 @@ struct TileLook {
   LevelLook whole;               ///< the image or the colours that all of them share; or nothing
 };
 
-/// Buildings without appearance are grey beside others. Atlases of a group that do not fit into one
-/// of `largest` texels a side are halved until they do; its facets have one colour each where not
-/// even a block of texels for each building fits.
-TileLook look_of(const PlannedTile& tile, const std::vector<ExportBuilding>& buildings,
-                 int largest);
+/// A building's coarsest level, as stand-ins are coloured by it.
+struct CoarsestLook {
+  Mesh mesh;                           ///< building-local
+  std::vector<int> facet_of_triangle;  ///< per face of the mesh
+  std::vector<Rgb> facet_colors;       ///< per facet; empty: it has none
+};
+
+CoarsestLook coarsest_look(const ExportLevel& coarsest);
+
+/// Of a tile that shows buildings' levels, which are there. Buildings without appearance are grey
+/// beside others. Atlases of a group that do not fit into one of `largest` texels a side are halved
+/// until they do; its facets have one colour each where not even a block of texels for each
+/// building fits.
+TileLook look_of_levels(const PlannedTile& tile, int largest);
+
+/// Of a tile that shows stand-ins: asks for each building's coarsest level, in rising order.
+TileLook look_of_stand_ins(const PlannedTile& tile,
+                           const std::function<CoarsestLook(int building)>& coarsest);
 
 }  // namespace colod

@@ -55,20 +55,20 @@ Vec2 turned(const Vec2& p, double yaw) {
           std::sin(yaw) * p.x() + std::cos(yaw) * p.y()};
 }
 
-Vec3 to_world(const StandIn& box, const Vec3& p) {
+Vec3 to_world(const StandInBox& box, const Vec3& p) {
   const Vec2 xy = turned({p.x(), p.y()}, box.yaw);
   return box.origin + Vec3(xy.x(), xy.y(), p.z());
 }
 
 /// The upright box of this yaw about points.
-StandIn box_about(const std::vector<Vec3>& points, double yaw) {
+StandInBox box_about(const std::vector<Vec3>& points, double yaw) {
   Box extent;
   for (const Vec3& p : points) {
     const Vec2 xy = turned({p.x(), p.y()}, -yaw);
     extent.extend(Vec3(xy.x(), xy.y(), p.z()));
   }
   const Vec2 middle = turned({extent.center().x(), extent.center().y()}, yaw);
-  StandIn box;
+  StandInBox box;
   box.origin = {middle.x(), middle.y(), extent.min.z()};
   box.yaw = yaw;
   const Vec3 size = extent.size();
@@ -76,15 +76,15 @@ StandIn box_about(const std::vector<Vec3>& points, double yaw) {
   return box;
 }
 
-StandIn least_box_about(const std::vector<Vec3>& points) {
+StandInBox least_box_about(const std::vector<Vec3>& points) {
   std::vector<Vec2> flat;
   for (const Vec3& p : points) flat.emplace_back(p.x(), p.y());
   const std::vector<Vec2> hull = convex_hull(std::move(flat));
-  StandIn best;
+  StandInBox best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 side = hull[(i + 1) % hull.size()] - hull[i];
-    const StandIn box = box_about(points, std::atan2(side.y(), side.x()));
+    const StandInBox box = box_about(points, std::atan2(side.y(), side.x()));
     const double area = box.half.x() * box.half.y();
     if (!(area < (1 - 1e-9) * least)) continue;
     least = area;
@@ -94,7 +94,7 @@ StandIn least_box_about(const std::vector<Vec3>& points) {
 }
 
 /// To the box's surface, from inside or outside.
-double distance(const StandIn& box, const Vec3& p) {
+double distance(const StandInBox& box, const Vec3& p) {
   const Vec2 xy = turned(Vec2(p.x() - box.origin.x(), p.y() - box.origin.y()), -box.yaw);
   const double half_height = 0.5 * box.half.z();
   const Vec3 q(std::abs(xy.x()) - box.half.x(), std::abs(xy.y()) - box.half.y(),
@@ -103,7 +103,7 @@ double distance(const StandIn& box, const Vec3& p) {
 }
 
 /// Points on all six sides.
-std::vector<Vec3> lattice(const StandIn& box) {
+std::vector<Vec3> lattice(const StandInBox& box) {
   std::vector<Vec3> out;
   const Vec3 middle(0, 0, 0.5 * box.half.z()), half(box.half.x(), box.half.y(), middle.z());
   for (int axis = 0; axis < 3; ++axis)
@@ -133,16 +133,16 @@ std::vector<Vec3> points_on(const Mesh& mesh, double spacing) {
 }
 
 /// Both ways between a box and those that it replaces.
-double deviation(const StandIn& merged, const StandIn& a, const StandIn& b) {
+double deviation(const StandInBox& merged, const StandInBox& a, const StandInBox& b) {
   double worst = 0;
   for (const Vec3& p : lattice(merged))
     worst = std::max(worst, std::min(distance(a, p), distance(b, p)));
-  for (const StandIn* part : {&a, &b})
+  for (const StandInBox* part : {&a, &b})
     for (const Vec3& p : lattice(*part)) worst = std::max(worst, distance(merged, p));
   return worst;
 }
 
-std::vector<Vec3> corners(const StandIn& box) {
+std::vector<Vec3> corners(const StandInBox& box) {
   std::vector<Vec3> out;
   for (int c = 0; c < 8; ++c)
     out.push_back(to_world(box, {c & 1 ? box.half.x() : -box.half.x(),
@@ -151,12 +151,12 @@ std::vector<Vec3> corners(const StandIn& box) {
 }
 
 /// The smaller of the boxes about both in either's direction, as high as their mean by footprint.
-StandIn joined(const StandIn& a, const StandIn& b) {
+StandInBox joined(const StandInBox& a, const StandInBox& b) {
   std::vector<Vec3> points = corners(a);
   const std::vector<Vec3> more = corners(b);
   points.insert(points.end(), more.begin(), more.end());
-  StandIn box = box_about(points, a.yaw);
-  const StandIn other = box_about(points, b.yaw);
+  StandInBox box = box_about(points, a.yaw);
+  const StandInBox other = box_about(points, b.yaw);
   if (other.half.x() * other.half.y() < (1 - 1e-9) * box.half.x() * box.half.y()) box = other;
   const double wa = a.half.x() * a.half.y(), wb = b.half.x() * b.half.y();
   const double top =
@@ -169,8 +169,8 @@ StandIn joined(const StandIn& a, const StandIn& b) {
 
 /// What merging costs, quickly: how far corners and middles of the joined box's sides lie from the
 /// two, or the change of height.
-double cost(const StandIn& a, const StandIn& b) {
-  const StandIn box = joined(a, b);
+double cost(const StandInBox& a, const StandInBox& b) {
+  const StandInBox box = joined(a, b);
   double worst = std::max(std::abs(a.origin.z() + a.half.z() - box.origin.z() - box.half.z()),
                           std::abs(b.origin.z() + b.half.z() - box.origin.z() - box.half.z()));
   for (int i = -1; i <= 1; ++i)
@@ -182,7 +182,8 @@ double cost(const StandIn& a, const StandIn& b) {
 }
 
 /// `coarsest`: the gsd of the level before which the box stands.
-double gsd_of(const StandIn& box, const Mesh& finest, double coarsest, const SwitchFacts& facts) {
+double gsd_of(const StandInBox& box, const Mesh& finest, double coarsest,
+              const SwitchFacts& facts) {
   const double least = kLeastStep * coarsest;
   if (facts.measure != "visual") return std::max(least, box.error / facts.pixel_error);
   Mesh mesh = mesh_of(box).mesh();
@@ -193,10 +194,10 @@ double gsd_of(const StandIn& box, const Mesh& finest, double coarsest, const Swi
 
 }  // namespace
 
-StandIn stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts) {
+StandInBox stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts) {
   const Mesh coarsest = building.levels.front().mesh.mesh();
   const Mesh finest = building.levels.back().mesh.mesh();
-  StandIn box = least_box_about(coarsest.vertices);
+  StandInBox box = least_box_about(coarsest.vertices);
   const RayScene coarse_scene(coarsest), fine_scene(finest);
   const double spacing =
       std::max(kFinestStep, bounding_box(finest.vertices).diagonal() / (4 * kLattice));
@@ -205,7 +206,7 @@ StandIn stand_in_for(const ExportBuilding& building, int index, const SwitchFact
   points.insert(points.end(), more.begin(), more.end());
   const double height = box.half.z();
   double least = std::numeric_limits<double>::infinity();
-  StandIn best;
+  StandInBox best;
   for (const double share : kHeights) {
     box.half.z() = std::max(kLeastHalf, share * height);
     double lacking = 0;
@@ -224,17 +225,17 @@ StandIn stand_in_for(const ExportBuilding& building, int index, const SwitchFact
   return best;
 }
 
-void agree_on_switch(std::vector<StandIn>& boxes, const SwitchFacts& facts) {
+void agree_on_switch(std::vector<StandInBox>& boxes, const SwitchFacts& facts) {
   if (facts.scope != "scene" || boxes.empty()) return;
   std::vector<double> own;
-  for (const StandIn& box : boxes) own.push_back(box.gsd);
+  for (const StandInBox& box : boxes) own.push_back(box.gsd);
   const double coarsest = facts.layer_gsd.empty() ? 0 : facts.layer_gsd.front();
   const double shared = std::max(kLeastStep * coarsest, value_at_share(own, facts.share));
-  for (StandIn& box : boxes) box.gsd = shared;
+  for (StandInBox& box : boxes) box.gsd = shared;
 }
 
-std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t most,
-                                     double pixel_error) {
+std::vector<StandInBox> merge_stand_ins(std::vector<StandInBox> boxes, std::size_t most,
+                                        double pixel_error) {
   struct Pair {
     double cost;
     std::size_t other;
@@ -254,7 +255,7 @@ std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t mos
     for (std::size_t i = 1; i < pairs.size(); ++i)
       if (pairs[i].cost < pairs[first].cost) first = i;
     const std::size_t second = pairs[first].other;
-    StandIn box = joined(boxes[first], boxes[second]);
+    StandInBox box = joined(boxes[first], boxes[second]);
     const double added = deviation(box, boxes[first], boxes[second]);
     box.error = added + std::max(boxes[first].error, boxes[second].error);
     box.gsd = std::max({added / pixel_error, boxes[first].gsd, boxes[second].gsd});
@@ -275,7 +276,7 @@ std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t mos
   return boxes;
 }
 
-PolygonMesh mesh_of(const StandIn& box) {
+PolygonMesh mesh_of(const StandInBox& box) {
   static constexpr int kSides[5][4] = {
       {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 7, 6}};
   PolygonMesh mesh;

@@ -7,7 +7,7 @@
 namespace colod {
 
 /// An upright box that stands for some buildings. World coordinates.
-struct StandIn {
+struct StandInBox {
   std::vector<int> buildings;  ///< rising
   Vec3 origin = Vec3::Zero();  ///< middle of the foot
   double yaw = 0;              ///< radians, of the box's x axis from the world's
@@ -19,20 +19,20 @@ struct StandIn {
 
 /// The box of one building: upright about its coarsest level with the least footprint, as high as
 /// deviates least. Its gsd is measured as a level's is, and greater than the coarsest level's.
-StandIn stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts = {});
+StandInBox stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts = {});
 
 /// Scope scene: gives all boxes one gsd, as a layer has. Scope building: leaves them as they are.
-void agree_on_switch(std::vector<StandIn>& boxes, const SwitchFacts& facts);
+void agree_on_switch(std::vector<StandInBox>& boxes, const SwitchFacts& facts);
 
 /// Merges the cheapest pairs until at most `most` (≥ 1) are left. A merged box's error is its
 /// measured deviation from the boxes that it replaces, added to the largest of theirs; its gsd is
 /// that at which this deviation covers `pixel_error` pixels, and no less than theirs. O(n²).
-std::vector<StandIn> merge_stand_ins(std::vector<StandIn> boxes, std::size_t most,
-                                     double pixel_error = 2);
+std::vector<StandInBox> merge_stand_ins(std::vector<StandInBox> boxes, std::size_t most,
+                                        double pixel_error = 2);
 
 /// Its four walls and its top, about `origin`, axes parallel to the world's; no floor, which no one
 /// sees from far away.
-PolygonMesh mesh_of(const StandIn& box);
+PolygonMesh mesh_of(const StandInBox& box);
 
 constexpr int kStandInTriangles = 10;
 

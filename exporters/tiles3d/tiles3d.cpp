@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -29,6 +31,13 @@ constexpr double kStandInShare = 0.02;  // of the least error of a tile's stand-
 constexpr double kFarShare = 0.05;      // of the finest tiles' bytes, at the root
 constexpr std::size_t kMostNames = 4;   // of buildings behind one stand-in, in its name
 
+/// A finished tile and what its parent must cover.
+struct Tile {
+  Json json;
+  Box box;  // z-up tile space, with all below
+  double error = 0;
+};
+
 /// A tile's GLB and what the tileset says of it.
 struct Content {
   const PlannedTile* tile;
@@ -37,21 +46,24 @@ struct Content {
   Encoded file;
   Box box;  // z-up tile space
   double gsd = 0;
+  std::size_t bytes = 0;  // of the file, which may be handed over
+};
+
+/// A cell whose tiles are all encoded.
+struct Finished {
+  Tile tile;
+  std::size_t end = 0;  // behind its last content
 };
 
 struct Scene {
   const std::vector<ExportBuilding>& buildings;
+  const std::vector<TileOutline>& outlines;
   const TilesOptions& options;
-  std::vector<TileFrame> frames;  // the tileset's, then the cells'
-  std::vector<Content> contents;  // parents before children
-  std::vector<Encoded> cells;     // tilesets of cells
-};
-
-/// A finished tile and what its parent must cover.
-struct Tile {
-  Json json;
-  Box box;  // z-up tile space, with all below
-  double error = 0;
+  const LevelDepot& depot;
+  std::vector<TileFrame> frames = {};             // the tileset's, then the cells'
+  std::vector<Content> contents = {};             // parents before children
+  std::vector<Encoded> cells = {};                // tilesets of cells
+  std::map<std::size_t, Finished> finished = {};  // cells by the place of their first content
 };
 
 std::string percent_encoded(const std::string& path) {
@@ -131,13 +143,21 @@ Json identity_json(const std::string& name, const std::string& given_name, const
   return json;
 }
 
+TileLook look_of(const Scene& scene, const PlannedTile& tile) {
+  if (tile.parts.front().level) return look_of_levels(tile, scene.options.largest_texture);
+  for (const TilePart& part : tile.parts)
+    for (const int b : part.buildings)
+      if (scene.outlines[b].has_look) return look_of_stand_ins(tile, scene.depot.coarsest);
+  return {std::vector<LevelLook>(tile.parts.size()), {}};
+}
+
 /// One GLB with the tile's parts merged.
 void encode_content(const Scene& scene, Content& content) {
   const PlannedTile& tile = *content.tile;
   const TileFrame& frame = scene.frames[content.frame];
   const std::vector<PolygonMesh> parts = placed_parts(tile, frame);
   const QuantizationGrid grid = content_grid(parts, rounding_bound(tile, scene.options));
-  const TileLook look = look_of(tile, scene.buildings, scene.options.largest_texture);
+  const TileLook look = look_of(scene, tile);
   FlatMesh merged;
   std::vector<Feature> features;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -161,6 +181,7 @@ void encode_content(const Scene& scene, Content& content) {
   add_features(document, features);
   const std::string folder = content.folder.empty() ? "tiles/" : content.folder;
   content.file = {folder + tile.name + ".glb", finish_glb(std::move(document))};
+  content.bytes = content.file.bytes.size();
   content.box.extend(from_gltf(seen.min));
   content.box.extend(from_gltf(seen.max));
 }
@@ -171,10 +192,9 @@ void lighten_root(Scene& scene, TilePlan& plan) {
   Content& root = scene.contents.front();
   double allowed = 0;
   for (const Content& content : scene.contents)
-    if (content.tile->children.empty())
-      allowed += kFarShare * static_cast<double>(content.file.bytes.size());
+    if (content.tile->children.empty()) allowed += kFarShare * static_cast<double>(content.bytes);
   std::size_t most = plan.farthest.size();
-  const auto is_light = [&] { return static_cast<double>(root.file.bytes.size()) <= allowed; };
+  const auto is_light = [&] { return static_cast<double>(root.bytes) <= allowed; };
   const auto show_merged = [&](std::size_t count) {
     show_farthest(plan, merge_stand_ins(plan.farthest, count, scene.options.switching.pixel_error));
     root.box = {}, root.gsd = 0;
@@ -257,6 +277,10 @@ Tile wrap_cell(Scene& scene, const Content& content, Tile inner) {
 }
 
 Tile assemble(Scene& scene, std::size_t& next) {
+  if (const auto cell = scene.finished.find(next); cell != scene.finished.end()) {
+    next = cell->second.end;
+    return std::move(cell->second.tile);
+  }
   const std::size_t self = next++;
   const PlannedTile& planned = *scene.contents[self].tile;
   const Content& content = scene.contents[self];
@@ -312,29 +336,82 @@ Tile beside_context(const Scene& scene, Tile buildings, std::vector<Encoded>& fi
   return root;
 }
 
-void check(const std::vector<ExportBuilding>& buildings) {
-  for (const ExportBuilding& b : buildings) {
-    const bool is_whole = !b.levels.empty() &&
-                          std::none_of(b.levels.begin(), b.levels.end(), [](const ExportLevel& l) {
-                            return l.mesh.triangles.empty();
-                          });
-    if (!is_whole) throw Error(Stage::kOutput, b.name, "no level, or a level without triangles");
+std::size_t end_of(const Scene& scene, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < scene.contents.size() && scene.contents[end].frame == scene.contents[first].frame)
+    ++end;
+  return end;
+}
+
+/// Per building of a tile.
+std::vector<int> buildings_of(const PlannedTile& tile) {
+  std::vector<int> all;
+  for (const TilePart& part : tile.parts)
+    all.insert(all.end(), part.buildings.begin(), part.buildings.end());
+  return all;
+}
+
+/// Contents [first, end), whose buildings have their levels meanwhile.
+void encode_contents(Scene& scene, std::size_t first, std::size_t end) {
+  const std::vector<int> buildings = buildings_of(*scene.contents[first].tile);
+  parallel_for(buildings.size(), [&](std::size_t i) { scene.depot.get(buildings[i]); });
+  parallel_for(end - first,
+               [&](std::size_t i) { encode_content(scene, scene.contents[first + i]); });
+  parallel_for(buildings.size(), [&](std::size_t i) { scene.depot.drop(buildings[i]); });
+}
+
+/// Cell by cell, so that one cell's levels are there at a time; `take` gets its files, its tileset
+/// last, unless it is empty.
+void encode_cells(Scene& scene, const std::function<void(const Encoded&)>& take) {
+  for (std::size_t first = 1; first < scene.contents.size(); ++first) {
+    if (!scene.contents[first].tile->is_cell) continue;
+    const std::size_t end = end_of(scene, first);
+    encode_contents(scene, first, end);
+    std::size_t next = first;
+    Tile tile = assemble(scene, next);
+    scene.finished[first] = {std::move(tile), end};
+    if (take) {
+      for (std::size_t i = first; i < end; ++i) {
+        take(scene.contents[i].file);
+        scene.contents[i].file.bytes = {};
+      }
+      take(scene.cells.back());
+      scene.cells.clear();
+    }
+    first = end - 1;
   }
+}
+
+/// What belongs to no cell, the root made light.
+void encode_top(Scene& scene, TilePlan& plan) {
+  if (plan.root.is_cell) {
+    encode_contents(scene, 0, scene.contents.size());
+  } else {
+    std::vector<std::size_t> top;
+    for (std::size_t i = 0; i < scene.contents.size(); ++i)
+      if (scene.contents[i].frame == 0) top.push_back(i);
+    parallel_for(top.size(), [&](std::size_t i) { encode_content(scene, scene.contents[top[i]]); });
+  }
+  lighten_root(scene, plan);
+}
+
+void check(const std::vector<ExportBuilding>& buildings) {
   if (buildings.empty()) throw Error(Stage::kOutput, "tileset.json", "no building to write");
 }
 
 }  // namespace
 
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
-                                    const TilesOptions& options) {
+                                    const std::vector<TileOutline>& outlines,
+                                    const LevelDepot& depot, const TilesOptions& options,
+                                    const std::function<void(const Encoded&)>& take) {
   check(buildings);
-  TilePlan plan = plan_tiles(buildings, options.switching);
-  Scene scene{buildings, options, {}, {}, {}};
+  TilePlan plan = plan_tiles(buildings, outlines, options.switching);
+  Scene scene{buildings, outlines, options, depot};
   scene.frames.push_back(frame_of(scene, plan.root));
   list_contents(scene, plan.root, 0, "");
-  parallel_for(scene.contents.size(),
-               [&](std::size_t i) { encode_content(scene, scene.contents[i]); });
-  lighten_root(scene, plan);
+  encode_cells(scene, take);
+  encode_top(scene, plan);
   std::size_t next = 0;
   Tile root = assemble(scene, next);
   const TileFrame& frame = scene.frames.front();
@@ -345,9 +422,21 @@ std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings
       {"tileset.json", dumped(start_tileset(scene, frame, std::move(root)))}};
   files.insert(files.end(), std::make_move_iterator(scene.cells.begin()),
                std::make_move_iterator(scene.cells.end()));
-  for (Content& content : scene.contents) files.push_back(std::move(content.file));
+  for (Content& content : scene.contents)
+    if (!content.file.bytes.empty()) files.push_back(std::move(content.file));
   for (Encoded& file : around) files.push_back(std::move(file));
   return files;
+}
+
+std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
+                                    const TilesOptions& options) {
+  check(buildings);
+  std::vector<TileOutline> outlines(buildings.size());
+  parallel_for(buildings.size(),
+               [&](std::size_t i) { outlines[i] = outline_of(buildings[i], options.switching); });
+  const auto stay = [](int) {};
+  const auto coarsest = [&](int b) { return coarsest_look(buildings[b].levels.front()); };
+  return encode_tileset(buildings, outlines, {stay, stay, coarsest}, options, {});
 }
 
 }  // namespace colod

@@ -6,6 +6,7 @@
 
 #include "context.h"
 #include "exporters/exporter.h"
+#include "looks.h"
 
 namespace colod {
 
@@ -30,5 +31,19 @@ struct TilesOptions {
 /// Error{kOutput} for a building without levels or triangles.
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
                                     const TilesOptions& options = {});
+
+/// Levels that lie elsewhere. By a building's place in the list; called from several threads.
+struct LevelDepot {
+  std::function<void(int building)> get;   ///< gives its levels their meshes and looks …
+  std::function<void(int building)> drop;  ///< … and takes them away
+  std::function<CoarsestLook(int building)> coarsest;  ///< whether they are there or not
+};
+
+/// The same of buildings of which only what `outlines` tell is in memory: levels come cell by cell.
+/// `take` gets a cell's files, its tileset last, when they are made; empty: all is in the result.
+std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
+                                    const std::vector<TileOutline>& outlines,
+                                    const LevelDepot& depot, const TilesOptions& options,
+                                    const std::function<void(const Encoded&)>& take);
 
 }  // namespace colod

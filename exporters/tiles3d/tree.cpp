@@ -7,6 +7,7 @@
 #include <array>
 #include <numeric>
 
+#include "core/error.h"
 #include "core/parallel.h"
 
 namespace colod {
@@ -22,9 +23,10 @@ constexpr std::size_t kMostStandIns = 64;  // in one tile
 constexpr double kNearer = 1.005;  // scope scene: a level may stand so much nearer than others' …
 constexpr double kWorthATile = 1.4;  // … scope building: so much nearer that it is worth a tile
 
-void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<StandIn>& boxes) {
+void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile,
+          const std::vector<StandInBox>& boxes) {
   tile.parts.clear();
-  for (const StandIn& box : boxes) {
+  for (const StandInBox& box : boxes) {
     meshes.push_back(mesh_of(box));
     tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.gsd, box.error});
   }
@@ -32,17 +34,16 @@ void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile, const std::vector<
 
 class Planner {
  public:
-  Planner(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts)
+  Planner(const std::vector<ExportBuilding>& buildings, const std::vector<TileOutline>& outlines,
+          const SwitchFacts& facts)
       : buildings_(buildings),
+        outlines_(outlines),
         pixel_error_(facts.pixel_error),
-        worth_a_tile_(facts.scope == "scene" ? kNearer : kWorthATile),
-        boxes_(buildings.size()),
-        singles_(buildings.size()) {
-    parallel_for(buildings.size(), [&](std::size_t i) {
-      for (const Vec3& p : buildings[i].levels.front().mesh.vertices)
-        boxes_[i].extend(Vec3(p + buildings[i].origin));
-      singles_[i] = stand_in_for(buildings[i], static_cast<int>(i), facts);
-    });
+        worth_a_tile_(facts.scope == "scene" ? kNearer : kWorthATile) {
+    for (const TileOutline& outline : outlines) {
+      singles_.push_back(outline.stand_in);
+      singles_.back().buildings = {static_cast<int>(singles_.size()) - 1};
+    }
     agree_on_switch(singles_, facts);
   }
 
@@ -56,11 +57,11 @@ class Planner {
  private:
   /// Shows stand-ins; what is in `below` is of other tiles, and the tile's own join it.
   PlannedTile far_tile(const std::vector<int>& group, const std::string& name, bool is_in_cell,
-                       std::vector<StandIn>& below) {
+                       std::vector<StandInBox>& below) {
     PlannedTile tile{.name = name, .parts = {}, .children = {}};
     tile.is_cell = !is_in_cell && is_cell(group);
     is_in_cell |= tile.is_cell;
-    std::vector<StandIn> shown;
+    std::vector<StandInBox> shown;
     const bool is_merged = budget(group) < group.size();
     const auto add_near = [&](const std::vector<int>& part, const std::string& child) {
       tile.children.push_back(is_merged ? box_tile(part, child) : near_tile(part, child));
@@ -87,7 +88,7 @@ class Planner {
   /// Shows a box for each building, below a tile that merged them.
   PlannedTile box_tile(const std::vector<int>& group, const std::string& name) {
     PlannedTile tile{.name = name, .parts = {}, .children = {}};
-    std::vector<StandIn> boxes;
+    std::vector<StandInBox> boxes;
     for (const int b : group) boxes.push_back(singles_[b]);
     show(plan_.stand_ins, tile, boxes);
     tile.children.push_back(near_tile(group, name + ".0"));
@@ -136,8 +137,7 @@ class Planner {
 
   std::size_t budget(const std::vector<int>& group) const {
     double finest = 0;
-    for (const int b : group)
-      finest += static_cast<double>(buildings_[b].levels.back().mesh.triangles.size());
+    for (const int b : group) finest += static_cast<double>(outlines_[b].triangles);
     const auto boxes = [&](double share) {
       return static_cast<std::size_t>(share * finest / kStandInTriangles);
     };
@@ -148,7 +148,7 @@ class Planner {
 
   Vec3 extent(const std::vector<int>& group) const {
     Box box;
-    for (const int b : group) box.extend(boxes_[b]);
+    for (const int b : group) box.extend(outlines_[b].box);
     return box.size();
   }
 
@@ -163,7 +163,7 @@ class Planner {
   std::vector<std::vector<int>> quarter(const std::vector<int>& group) const {
     const auto halve = [&](std::vector<int> all, int axis) {
       std::stable_sort(all.begin(), all.end(), [&](int a, int b) {
-        return boxes_[a].center()[axis] < boxes_[b].center()[axis];
+        return outlines_[a].box.center()[axis] < outlines_[b].box.center()[axis];
       });
       const auto half = all.begin() + static_cast<long>((all.size() + 1) / 2);
       return std::array{std::vector<int>(all.begin(), half), std::vector<int>(half, all.end())};
@@ -178,20 +178,43 @@ class Planner {
   }
 
   const std::vector<ExportBuilding>& buildings_;
+  const std::vector<TileOutline>& outlines_;
   double pixel_error_;
-  double worth_a_tile_;     // a factor between the gsds of a group and of one of its buildings
-  std::vector<Box> boxes_;  // of the coarsest levels, world
-  std::vector<StandIn> singles_;  // one a building
+  double worth_a_tile_;  // a factor between the gsds of a group and of one of its buildings
+  std::vector<StandInBox> singles_;  // one a building
   TilePlan plan_;
 };
 
 }  // namespace
 
-TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts) {
-  return Planner(buildings, facts).plan();
+TileOutline outline_of(const ExportBuilding& building, const SwitchFacts& facts) {
+  const bool is_whole = !building.levels.empty() &&
+                        std::none_of(building.levels.begin(), building.levels.end(),
+                                     [](const ExportLevel& l) { return l.mesh.triangles.empty(); });
+  if (!is_whole)
+    throw Error(Stage::kOutput, building.name, "no level, or a level without triangles");
+  TileOutline outline;
+  const ExportLevel& coarsest = building.levels.front();
+  for (const Vec3& p : coarsest.mesh.vertices) outline.box.extend(Vec3(p + building.origin));
+  outline.triangles = building.levels.back().mesh.triangles.size();
+  outline.stand_in = stand_in_for(building, 0, facts);
+  outline.has_look = coarsest.look.has_texture() || !coarsest.look.facet_colors.empty();
+  return outline;
 }
 
-void show_farthest(TilePlan& plan, const std::vector<StandIn>& boxes) {
+TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings,
+                    const std::vector<TileOutline>& outlines, const SwitchFacts& facts) {
+  return Planner(buildings, outlines, facts).plan();
+}
+
+TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts) {
+  std::vector<TileOutline> outlines(buildings.size());
+  parallel_for(buildings.size(),
+               [&](std::size_t i) { outlines[i] = outline_of(buildings[i], facts); });
+  return plan_tiles(buildings, outlines, facts);
+}
+
+void show_farthest(TilePlan& plan, const std::vector<StandInBox>& boxes) {
   show(plan.stand_ins, plan.root, boxes);
 }
 

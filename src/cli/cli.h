@@ -15,6 +15,7 @@ Run add_segment(CLI::App& app);
 Run add_analyze(CLI::App& app);
 Run add_mesh(CLI::App& app);
 Run add_export(CLI::App& app);
+Run add_merge(CLI::App& app);
 Run add_eval(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_synth(CLI::App& app);

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
       colod::cli::add_analyze);
   add("mesh", "stage 3: one mesh a building and layer", colod::cli::add_mesh);
   add("export", "stage 4: a meshed scene file to GLB, 3D Tiles, OBJ, PLY", colod::cli::add_export);
+  add("merge", "the files of a scene whose cells were exported apart", colod::cli::add_merge);
   add("eval", "metrics of one mesh against another, JSON on stdout", colod::cli::add_eval);
   add("info", "what a mesh, GLB or tileset holds, JSON on stdout", colod::cli::add_info);
   add("synth", "a procedural neighbourhood with ground truth", colod::cli::add_synth);

@@ -23,7 +23,7 @@ int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::t
                                            std::move(pictures), a.options))
     write_file(a.out, file);
   log_problems(scene, log);
-  log.message(summary_of(scene, seconds.count(), a.out));
+  log.message(summary_of(scene, tally_of(scene), seconds.count(), a.out));
   return exit_code(scene);
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "cells.h"
 #include "cli.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -39,41 +40,6 @@ struct StageArguments {
   OutputArguments output;
   RunArguments run;
 };
-
-std::vector<std::string> names_of(const Inventory& inventory) {
-  std::vector<std::string> names;
-  for (const InputFile& file : inventory.files)
-    names.insert(names.end(), file.names.begin(), file.names.end());
-  return names;
-}
-
-/// A cell whose run was broken off, or never began, must not pass for a smaller one.
-void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cell) {
-  const std::string path = cell_scene(plan_path, cell);
-  const std::vector<std::string> names = names_of(inventory_of(plan, cell));
-  std::size_t there = 0;
-  if (std::filesystem::exists(path)) {
-    const Store store(path, false);
-    for (const std::string& name : names) there += !store.segments_key(name).empty();
-    if (there == names.size() && store.names().size() == names.size()) return;
-  }
-  throw Error(Stage::kInput, path,
-              "has " + std::to_string(there) + " of the " + std::to_string(names.size()) +
-                  " buildings that it is to have: run colod segment --plan " + plan_path +
-                  " --shard " + std::to_string(cell) + "/" + std::to_string(plan.cells.size()));
-}
-
-/// Calls body(cell, its scene file) for the cells of this run's shard; no other run is at work on a
-/// cell meanwhile.
-void for_own_cells(const PlanArguments& a, const Plan& plan,
-                   const std::function<void(std::size_t, const std::string&)>& body) {
-  const std::size_t cells = plan.cells.size();
-  for (const std::size_t cell : cells_of(shard_of(a.shard, cells), cells)) {
-    const std::string path = cell_scene(a.path, cell);
-    const CellLock lock(path);
-    body(cell, path);
-  }
-}
 
 /// Does what of the inventory is not yet in the scene file; what went wrong is added to `problems`.
 void segment_into(Store& store, const Inventory& inventory, const Reader& read,
@@ -302,6 +268,8 @@ class Sources : public Depot {
 };
 
 int export_files(const StageArguments& a) {
+  if (!a.plan.path.empty() && is_sharded(a.plan.shard))
+    return export_shard({a.plan, a.prior, a.output, a.run});
   const auto start = std::chrono::steady_clock::now();
   check_output(a.output.options);
   limit_threads(a.run.threads);
@@ -405,7 +373,7 @@ Run add_mesh(CLI::App& app) {
 }
 
 Run add_export(CLI::App& app) {
-  auto a = add_scene_files(app, false);
+  auto a = add_scene_files(app, true);
   app.add_option("--prior", a->prior,
                  "a scene file with meshes: its buildings decide where all layers switch")
       ->check(CLI::ExistingFile);

@@ -409,21 +409,29 @@ void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
                      const std::vector<BuildingSights>& prior) {
   std::vector<BuildingSights> own;
   for (const Building& b : scene.buildings) own.push_back(sights_of(b));
-  Switching& switching = scene.switching;
+  scene.switching = plan_switches(own, layers, options, prior);
+  for (Building& b : scene.buildings) apply_switches(scene.switching, b);
+}
+
+Switching plan_switches(const std::vector<BuildingSights>& own, int layers,
+                        const SwitchOptions& options, const std::vector<BuildingSights>& prior) {
+  Switching switching;
   switching.options = options;
   switching.is_from_prior = !prior.empty();
   switching.layers = prior.empty() ? plan_scene_switches(own, layers, options)
                                    : plan_scene_switches(prior, layers, options, own);
   switching.warnings = idle_layers(own, layers);
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const std::vector<double> gsds = own_gsds(own[i], options);
-    std::size_t next = 0;
-    for (Layer& layer : scene.buildings[i].layers) {
-      if (!layer.failure.empty()) continue;
-      layer.own_gsd = layer.gsd = gsds[next++];
-      if (options.scope == SwitchScope::kScene && next < gsds.size())
-        layer.gsd = switching.layers[layer.layer].gsd;
-    }
+  return switching;
+}
+
+void apply_switches(const Switching& switching, Building& b) {
+  const std::vector<double> gsds = own_gsds(sights_of(b), switching.options);
+  std::size_t next = 0;
+  for (Layer& layer : b.layers) {
+    if (!layer.failure.empty()) continue;
+    layer.own_gsd = layer.gsd = gsds[next++];
+    if (switching.options.scope == SwitchScope::kScene && next < gsds.size())
+      layer.gsd = switching.layers[layer.layer].gsd;
   }
 }
 

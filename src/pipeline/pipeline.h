@@ -235,6 +235,12 @@ void mesh_building(Building& building, const Options& options, const Hooks& hook
 /// prior that has sights, its buildings decide the scene's g. Layers are numbered below `layers`.
 void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
                      const std::vector<BuildingSights>& prior = {});
+/// The same in two steps, for buildings that are not all in memory: what the scene's buildings
+/// bring decides, in any order, and then for each building.
+Switching plan_switches(const std::vector<BuildingSights>& own, int layers,
+                        const SwitchOptions& options,
+                        const std::vector<BuildingSights>& prior = {});
+void apply_switches(const Switching& switching, Building& building);
 
 /// Holds the layers of a building against a ground truth; `source` is its own in its local frame,
 /// with object numbers. Empty where the truth does not name it or a layer failed. Throws

@@ -232,6 +232,15 @@ std::string cell_stamp_file(const std::string& plan_path, std::size_t cell) {
   return beside(plan_path, cell, ".stamp");
 }
 
+std::string cell_export(const std::string& plan_path, std::size_t cell) {
+  return beside(plan_path, cell, ".export");
+}
+
+bool is_sharded(const std::string& text) {
+  return !text.empty() || number(getenv("SLURM_ARRAY_TASK_ID")) ||
+         number(getenv("JOB_COMPLETION_INDEX"));
+}
+
 Shard shard_of(const std::string& text, std::size_t cells) {
   if (!text.empty()) {
     const std::size_t slash = text.find('/');

@@ -48,9 +48,11 @@ Plan read_plan(const std::string& path);
 /// the options.
 std::string cell_stamp(const Plan& plan, std::size_t cell);
 
-/// Beside the plan: where a cell's scene file lies; where its stamp does.
+/// Beside the plan: where a cell's scene file lies; where its stamp does;
 std::string cell_scene(const std::string& plan_path, std::size_t cell);
 std::string cell_stamp_file(const std::string& plan_path, std::size_t cell);
+/// What its export hands to the merge.
+std::string cell_export(const std::string& plan_path, std::size_t cell);
 
 /// Which of `count` runs this is, 0 … count − 1.
 struct Shard {
@@ -60,6 +62,8 @@ struct Shard {
 /// "I/N"; of an empty text what SLURM_ARRAY_TASK_ID (with _MIN, _MAX and _STEP) or
 /// JOB_COMPLETION_INDEX (one run a cell) say, else all cells. Throws Error{kUsage}.
 Shard shard_of(const std::string& text, std::size_t cells);
+/// Whether the text or the environment says that this is one of several runs.
+bool is_sharded(const std::string& text);
 
 /// Every count-th cell from the index on.
 std::vector<std::size_t> cells_of(const Shard& shard, std::size_t cells);

@@ -1,6 +1,5 @@
 #include "messages.h"
 
-#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -8,9 +7,9 @@
 #include "pipeline/losses.h"
 
 namespace colod {
-namespace {
 
-void add_building(const Building& b, std::vector<Message>& to) {
+std::vector<Message> problems_of(const Building& b) {
+  std::vector<Message> to;
   if (!b.failure.empty()) to.push_back({Level::kError, b.failure});
   for (const Layer& layer : b.layers) {
     const std::string place = b.source.name + ", layer " + std::to_string(layer.layer) + ": ";
@@ -23,9 +22,8 @@ void add_building(const Building& b, std::vector<Message>& to) {
     to.push_back({b.has_lost_shape() ? Level::kError : Level::kWarning, b.source.name + ": " + w});
   for (const std::string& w : b.lost_looks) to.push_back({Level::kError, b.source.name + ": " + w});
   for (const std::string& w : b.warnings) to.push_back({Level::kWarning, b.source.name + ": " + w});
+  return to;
 }
-
-}  // namespace
 
 std::vector<Message> problems_of(const Scene& scene) {
   std::vector<Message> all;
@@ -35,32 +33,27 @@ std::vector<Message> problems_of(const Scene& scene) {
     all.push_back({Level::kError, "tileset.json is not written: " + scene.tileset_failure});
   for (const ReadFailure& f : scene.failures)
     all.push_back({Level::kError, f.path + ": " + f.message});
-  for (const Building& b : scene.buildings) add_building(b, all);
+  for (const Building& b : scene.buildings)
+    for (Message& m : problems_of(b)) all.push_back(std::move(m));
   return all;
 }
 
-Message summary_of(const Scene& scene, double seconds, const std::string& out) {
-  const auto done = std::count_if(scene.buildings.begin(), scene.buildings.end(),
-                                  [](const Building& b) { return b.failure.empty(); });
-  const auto lossy = std::count_if(
-      scene.buildings.begin(), scene.buildings.end(),
-      [](const Building& b) { return b.failure.empty() && (b.has_lost() || b.has_failed()); });
+Message summary_of(const Scene& scene, const Tally& tally, double seconds, const std::string& out) {
   std::ostringstream text;
-  text << done << " of " << scene.buildings.size() + scene.failures.size() << " buildings in "
+  text << tally.done << " of " << tally.buildings + scene.failures.size() << " buildings in "
        << std::fixed << std::setprecision(1) << seconds << " s, written to " << out
        << " (layer 0 is the coarsest)";
-  if (lossy > 0) text << "; of " << lossy << " of them something is lost, as said above";
+  if (tally.lossy > 0)
+    text << "; of " << tally.lossy << " of them something is lost, as said above";
   return {Level::kInfo, text.str()};
 }
 
-int exit_code(const Scene& scene) {
-  std::size_t failed = scene.failures.size() + !scene.tileset_failure.empty();
-  for (const Building& b : scene.buildings) failed += b.has_failed() || b.has_lost();
-  if (failed == 0) return 0;
-  const bool is_any_done = std::any_of(scene.buildings.begin(), scene.buildings.end(),
-                                       [](const Building& b) { return b.failure.empty(); });
-  if (is_any_done) return 1;
-  return static_cast<int>(scene.buildings.empty() ? Stage::kInput : Stage::kProcess);
+int exit_code(const Scene& scene, const Tally& tally) {
+  if (scene.failures.size() + !scene.tileset_failure.empty() + tally.amiss == 0) return 0;
+  if (tally.done > 0) return 1;
+  return static_cast<int>(tally.buildings == 0 ? Stage::kInput : Stage::kProcess);
 }
+
+int exit_code(const Scene& scene) { return exit_code(scene, tally_of(scene)); }
 
 }  // namespace colod

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/pipeline.h"
+#include "tally.h"
 
 namespace colod {
 
@@ -22,10 +23,15 @@ using Tell = std::function<void(const Message&)>;
 /// Failures as errors, the rest as warnings, in the order of the buildings.
 std::vector<Message> problems_of(const Scene& scene);
 
-/// "n of m buildings in s s, written to OUT …".
-Message summary_of(const Scene& scene, double seconds, const std::string& out);
+/// Of one building.
+std::vector<Message> problems_of(const Building& building);
+
+/// "n of m buildings in s s, written to OUT …". `tally` is the sum of the scene's buildings, which
+/// need not be there.
+Message summary_of(const Scene& scene, const Tally& tally, double seconds, const std::string& out);
 
 /// 0, 1, or 3 and 4 when nothing could be read or made.
+int exit_code(const Scene& scene, const Tally& tally);
 int exit_code(const Scene& scene);
 
 }  // namespace colod

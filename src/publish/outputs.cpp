@@ -4,14 +4,11 @@
 #include <exception>
 #include <mutex>
 
+#include "building_files.h"
 #include "context.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "dress.h"
-#include "exporters/gltf/engine.h"
-#include "exporters/gltf/glb.h"
 #include "exporters/html_report/html_report.h"
-#include "exporters/plain/obj.h"
 #include "exporters/tiles3d/archive.h"
 #include "exporters/tiles3d/tiles3d.h"
 #include "place/place.h"
@@ -22,58 +19,6 @@
 
 namespace colod {
 namespace {
-
-Encoded encode_page(const Scene& scene, const Options& options, const std::string& report,
-                    Pictures pictures) {
-  HtmlReport page{report, parts_json(scene, options), std::move(pictures), {}};
-  for (int layer = 0; layer < options.layers; ++layer) {
-    const Color c = layer_color(layer);
-    char text[8];
-    std::snprintf(text, sizeof text, "#%02x%02x%02x", c[0], c[1], c[2]);
-    page.layer_colors.push_back(text);
-  }
-  return encode_html_report(page);
-}
-
-EngineOptions engine_options(const OutputOptions& a, const SwitchFacts& facts) {
-  return {.quantization = a.quantization, .switching = facts};
-}
-
-bool writes(const OutputOptions& a, const char* format) {
-  return std::find(a.formats.begin(), a.formats.end(), format) != a.formats.end();
-}
-
-/// The chain; notes what each layer's mesh takes of it.
-Encoded encode_glb(const ExportBuilding& out, const SwitchFacts& facts, const OutputOptions& a,
-                   Building& b) {
-  const BuildingGlb glb = encode_building_glb(
-      out, {.compression = a.compression, .quantization = a.quantization, .switching = facts});
-  for (std::size_t level = 0; level < out.levels.size(); ++level)
-    for (Layer& layer : b.layers)
-      if (std::ranges::count(out.levels[level].layers, layer.layer) > 0)
-        layer.bytes = glb.level_bytes[level];
-  return glb;
-}
-
-/// The files of one building.
-std::vector<Encoded> building_files(const ExportBuilding& out, const SwitchFacts& facts,
-                                    const OutputOptions& a, Building& b) {
-  std::vector<Encoded> files;
-  if (writes(a, "glb")) files.push_back(encode_glb(out, facts, a, b));
-  if (writes(a, "engine"))
-    for (Encoded& file : encode_engine_levels(out, engine_options(a, facts)))
-      files.push_back(std::move(file));
-  for (const ExportLevel& level : out.levels)
-    for (const int layer : level.layers) {
-      if (writes(a, "obj")) {
-        files.push_back(encode_obj(out, level, layer));
-        for (Encoded& file : encode_obj_material(out, level, layer))
-          files.push_back(std::move(file));
-      }
-      if (writes(a, "ply")) files.push_back(encode_ply(out, level, layer));
-    }
-  return files;
-}
 
 int most_layers(const Scene& scene) {
   std::size_t most = 0;
@@ -89,65 +34,6 @@ std::vector<Building*> by_name(Scene& scene) {
     return a->source.name < b->source.name;
   });
   return sorted;
-}
-
-/// What all buildings of a scene are written with.
-struct Writer {
-  const OutputOptions& options;
-  SwitchFacts facts;
-  const ImageCache& images;
-  PictureOptions look;  // of pictures of looks
-};
-
-/// A building is not lost for want of its picture.
-void add_looks(const Writer& w, Building& b, const ExportBuilding& out,
-               std::vector<std::string>& pictures) {
-  try {
-    for (std::string& picture : draw_looks(b, out, w.images, w.look))
-      pictures.push_back(std::move(picture));
-  } catch (const std::exception& e) {
-    b.warnings.push_back(std::string("no pictures of its looks: ") + e.what());
-  }
-}
-
-/// Brings the source back for as long as its layers are dressed; `pictures` may be null.
-void dress_from(Depot& depot, const Writer& w, Building& b, ExportBuilding& out,
-                std::vector<std::string>* pictures) {
-  if (!is_dressed(b, w.options.texture)) return;
-  depot.get(b);
-  try {
-    dress(b, w.options.texture, w.images, out);
-    if (pictures && !pictures->empty() && w.options.texture.mode == Texture::kAuto)
-      add_looks(w, b, out, *pictures);
-  } catch (const std::exception& e) {  // a failure of its looks alone
-    b.lost_looks.push_back(std::string("is written without textures: ") + e.what());
-    for (ExportLevel& level : out.levels) level.look = {};
-  }
-  depot.drop(b);
-}
-
-/// Of the levels' pixels only the coarsest's are needed after a building's own files: groups of far
-/// buildings share an atlas.
-void let_go_of_pixels(ExportBuilding& out) {
-  for (std::size_t i = 0; i < out.levels.size(); ++i) {
-    if (i > 0) out.levels[i].look.raster = {};
-    out.levels[i].look.normals.clear();  // tiles have none
-    out.levels[i].look.normal_raster = {};
-  }
-}
-
-/// A building that cannot be encoded fails alone.
-void encode_building(ExportBuilding& out, const Writer& w, Depot& depot, Building& b,
-                     std::vector<std::string>* pictures, const Take& take) {
-  std::vector<Encoded> files;
-  dress_from(depot, w, b, out, pictures);
-  try {
-    files = building_files(out, w.facts, w.options, b);
-  } catch (const std::exception& e) {
-    b.failure = b.source.name + ": cannot be exported: " + e.what();
-  }
-  for (const Encoded& file : files) take(file);
-  let_go_of_pixels(out);
 }
 
 /// A tileset that cannot be made leaves the buildings' files and the report as they are.
@@ -167,6 +53,8 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
       throw;
     }
   };
+  std::vector<std::string> paths;
+  for (const Building& b : scene.buildings) paths.push_back(b.source.path);
   const std::optional<ContextTiles> around = context_tiles(scene, a.texture, failures);
   try {
     files = encode_tileset(buildings,
@@ -177,7 +65,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .largest_texture = a.texture.largest,
                             .context = around ? &*around : nullptr,
                             .take_context = writes(a, "3tz") ? Take{} : writer,
-                            .placement = find_placement(scene, a.crs, a.origin, buildings, tell)});
+                            .placement = find_placement(paths, a.crs, a.origin, buildings, tell)});
   } catch (const std::exception& e) {
     if (unwritten) std::rethrow_exception(unwritten);
     scene.tileset_failure = e.what();
@@ -248,7 +136,8 @@ std::vector<Encoded> encode_report(const Scene& scene, const Options& options,
   std::vector<Encoded> files;
   std::string report = report_json(scene, options, totals);
   if (!output.has_no_page)
-    files.push_back(encode_page(scene, options, report, std::move(pictures)));
+    files.push_back(encode_html_report({report, parts_json(scene, options), std::move(pictures),
+                                        css_layer_colors(options.layers)}));
   files.push_back({"report.json", std::move(report)});
   return files;
 }

@@ -13,15 +13,16 @@ namespace {
 constexpr const char* kAdvice = "; the tileset stays local: use --crs and --origin";
 
 /// What the files beside all sources say alike; sources from memory have none.
-std::optional<Georeference> georeference_of_sources(const Scene& scene, const Tell& tell) {
+std::optional<Georeference> georeference_of_sources(const std::vector<std::string>& paths,
+                                                    const Tell& tell) {
   std::optional<Georeference> found;
   std::set<std::string> folders;
-  for (const Building& b : scene.buildings) {
-    if (b.source.path.empty()) continue;
-    const std::string folder = std::filesystem::path(b.source.path).parent_path().string();
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    const std::string folder = std::filesystem::path(path).parent_path().string();
     if (!folders.insert(folder).second) continue;
     try {
-      const auto here = georeference_beside(b.source.path);
+      const auto here = georeference_beside(path);
       if (folders.size() == 1)
         found = here;
       else if (found.has_value() != here.has_value() ||
@@ -52,11 +53,12 @@ std::optional<EarthMap> try_place(const Georeference& g, const std::vector<Expor
 
 }  // namespace
 
-Placement find_placement(const Scene& scene, const std::string& crs, const std::string& origin,
-                         const std::vector<ExportBuilding>& buildings, const Tell& tell) {
+Placement find_placement(const std::vector<std::string>& source_paths, const std::string& crs,
+                         const std::string& origin, const std::vector<ExportBuilding>& buildings,
+                         const Tell& tell) {
   const std::optional<Georeference> given = georeference_from_options(crs, origin);
   std::optional<Georeference> found;
-  if (!given && crs.empty()) found = georeference_of_sources(scene, tell);
+  if (!given && crs.empty()) found = georeference_of_sources(source_paths, tell);
   std::optional<EarthMap> map;
   if (given)
     map = place_on_earth(*given, buildings.front().origin);

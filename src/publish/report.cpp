@@ -161,12 +161,9 @@ Json switching_json(const Switching& switching) {
 }
 
 /// How many assignments of segments to layers are whose.
-Json decided_json(const Scene& scene, std::size_t segments) {
-  const std::size_t overruled = scene.overruled.size();
-  std::size_t beyond = 0;
-  for (const Building& b : scene.buildings)
-    beyond += static_cast<std::size_t>(std::count_if(
-        b.layer_of_segment.begin(), b.layer_of_segment.end(), [](int l) { return l > 0; }));
+Json decided_json(const Scene& scene, const Tally& tally) {
+  const std::size_t overruled = scene.overruled.size(), segments = tally.segments;
+  const std::size_t beyond = tally.beyond_layer0;
   const bool is_by_kind = !scene.clustering.kinds.empty();
   return {{"program", segments - std::min(segments, beyond)},
           {"clustering", is_by_kind ? beyond - std::min(beyond, overruled) : 0},
@@ -192,20 +189,18 @@ Json overruled_json(const Scene& scene) {
   return json;
 }
 
-Json coanalysis_json(const Scene& scene) {
-  std::size_t segments = 0;
-  for (const Building& b : scene.buildings) segments += b.segments.segments.size();
+Json coanalysis_json(const Scene& scene, const Tally& tally) {
   std::vector<std::string> warnings = scene.selection.warnings;
   warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
                   scene.clustering.warnings.end());
-  return {{"segments", segments},
-          {"buildings", scene.buildings.size()},
+  return {{"segments", tally.segments},
+          {"buildings", tally.buildings},
           {"objective", scene.selection.objective},
           {"bound", scene.selection.bound},
           {"gap", scene.selection.gap},
           {"status", to_string(scene.selection.status)},
           {"solver", scene.selection.is_lp_solve ? "lp_solve" : "block ascent"},
-          {"decided", decided_json(scene, segments)},
+          {"decided", decided_json(scene, tally)},
           {"kinds", kinds_json(scene.clustering)},
           {"overruled", overruled_json(scene)},
           {"seconds", scene.coanalysis_seconds},
@@ -213,20 +208,16 @@ Json coanalysis_json(const Scene& scene) {
 }
 
 /// How much is amiss, over all buildings.
-void count_losses(const Scene& scene, Json& totals) {
-  std::size_t failed = scene.failures.size(), layers = 0, bodies = 0, stand_ins = 0, textures = 0;
-  for (const Building& b : scene.buildings) {
-    failed += !b.failure.empty();
-    textures += b.lost_looks.size();
-    for (const LeftOut& l : b.left_out) bodies += is_loss(l);
-    for (const Layer& layer : b.layers)
-      layers += !layer.failure.empty(), stand_ins += is_failure(layer.stand_in);
-  }
-  totals["failed_buildings"] = failed;
-  totals["failed_layers"] = layers;
-  totals["stand_in_layers"] = stand_ins;
-  totals["lost_bodies"] = bodies;
-  totals["lost_textures"] = textures;
+void put_losses(const Scene& scene, const Tally& tally, Json& totals) {
+  totals["failed_buildings"] = scene.failures.size() + tally.failed;
+  totals["failed_layers"] = tally.failed_layers;
+  totals["stand_in_layers"] = tally.stand_in_layers;
+  totals["lost_bodies"] = tally.lost_bodies;
+  totals["lost_textures"] = tally.lost_textures;
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -237,11 +228,8 @@ std::uint64_t peak_memory_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-std::string report_json(const Scene& scene, const Options& options, const RunTotals& totals) {
-  std::uint64_t rays = 0;
-  double ray_seconds = 0;
-  for (const Building& b : scene.buildings)
-    rays += b.segments.rays, ray_seconds += b.segments.visibility_seconds;
+ReportFrame report_frame(const Scene& scene, const Options& options, const RunTotals& totals,
+                         const Tally& tally) {
   Json json;
   json["colod"] = COLOD_VERSION;
   json["parameters"] = parameters_json(options);
@@ -249,29 +237,43 @@ std::string report_json(const Scene& scene, const Options& options, const RunTot
       {"seconds", totals.seconds},
       {"export_seconds", scene.export_seconds},
       {"peak_memory_bytes", totals.peak_memory_bytes},
-      {"rays", rays},
-      {"rays_per_second", ray_seconds > 0 ? static_cast<double>(rays) / ray_seconds : 0.0}};
-  count_losses(scene, json["totals"]);
-  json["coanalysis"] = coanalysis_json(scene);
+      {"rays", tally.rays},
+      {"rays_per_second",
+       tally.ray_seconds > 0 ? static_cast<double>(tally.rays) / tally.ray_seconds : 0.0}};
+  put_losses(scene, tally, json["totals"]);
+  json["coanalysis"] = coanalysis_json(scene, tally);
   json["switching"] = switching_json(scene.switching);
   if (!scene.consistency.empty())
     json["consistency"] = Json::parse(consistency_json(scene.consistency));
   json["warnings"] = scene.warnings;
   for (const ClassArea& c : scene.classes)
     json["classes"].push_back({{"name", c.name}, {"area", c.area}});
-  json["buildings"] = Json::array();
-  for (const Building& b : scene.buildings) {
-    json["buildings"].push_back(building_json(b, scene.has_prior));
-    if (const auto own = scene.attributes.find(b.source.name); own != scene.attributes.end())
-      for (const auto& [name, value] : own->second)
-        json["buildings"].back()["attributes"][name] = value;
-  }
-  json["failures"] = Json::array();
+  std::string before = dumped(json);
+  before.resize(before.size() - 2);  // "\n}": the object goes on
+  Json rest;
+  rest["failures"] = Json::array();
   for (const ReadFailure& f : scene.failures)
-    json["failures"].push_back({{"source", f.path}, {"message", f.message}});
+    rest["failures"].push_back({{"source", f.path}, {"message", f.message}});
   if (!scene.tileset_failure.empty())
-    json["failures"].push_back({{"source", "tileset.json"}, {"message", scene.tileset_failure}});
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    rest["failures"].push_back({{"source", "tileset.json"}, {"message", scene.tileset_failure}});
+  return {before + ",\n  \"buildings\": [", "]," + dumped(rest).substr(1) + "\n"};
+}
+
+std::string report_row(const Scene& scene, const Building& b) {
+  Json json = building_json(b, scene.has_prior);
+  if (const auto own = scene.attributes.find(b.source.name); own != scene.attributes.end())
+    for (const auto& [name, value] : own->second) json["attributes"][name] = value;
+  std::string row = "\n";
+  for (const char c : dumped(json)) c == '\n' ? row += "\n    " : row += c;
+  return row.insert(1, "    ");
+}
+
+std::string report_json(const Scene& scene, const Options& options, const RunTotals& totals) {
+  const ReportFrame frame = report_frame(scene, options, totals, tally_of(scene));
+  std::string text = frame.before;
+  for (std::size_t i = 0; i < scene.buildings.size(); ++i)
+    text += (i > 0 ? "," : "") + report_row(scene, scene.buildings[i]);
+  return text + (scene.buildings.empty() ? "" : "\n  ") + frame.after;
 }
 
 }  // namespace colod

@@ -18,23 +18,20 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostParts = 320;
 
 struct Part {
-  int layer = 0;
+  PartFacts facts;
   std::size_t building = 0, segment = 0;
-  const Descriptor* descriptor = nullptr;
 };
 
 /// By layer, there by falling extent.
-std::vector<Part> sorted_parts(const Scene& scene, int layers) {
+std::vector<Part> sorted_parts(const std::vector<std::vector<PartFacts>>& buildings, int layers) {
   std::vector<Part> parts;
-  for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
-    const Building& b = scene.buildings[i];
-    for (std::size_t s = 0; s < std::min(b.descriptors.size(), b.layer_of_segment.size()); ++s)
-      if (b.layer_of_segment[s] >= 0 && b.layer_of_segment[s] < layers)
-        parts.push_back({b.layer_of_segment[s], i, s, &b.descriptors[s]});
-  }
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    for (std::size_t s = 0; s < buildings[i].size(); ++s)
+      if (buildings[i][s].layer >= 0 && buildings[i][s].layer < layers)
+        parts.push_back({buildings[i][s], i, s});
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return std::tuple(a.layer, -a.descriptor->extent, a.building, a.segment) <
-           std::tuple(b.layer, -b.descriptor->extent, b.building, b.segment);
+    return std::tuple(a.facts.layer, -a.facts.extent, a.building, a.segment) <
+           std::tuple(b.facts.layer, -b.facts.extent, b.building, b.segment);
   });
   return parts;
 }
@@ -46,8 +43,8 @@ Json cluster_json(const std::vector<Part>& parts, int layer) {
   std::size_t flat = 0;
   for (const Part& p : parts) {
     buildings.push_back(p.building);
-    area += p.descriptor->area;
-    flat += p.descriptor->is_flat;
+    area += p.facts.area;
+    flat += p.facts.is_flat;
   }
   std::sort(buildings.begin(), buildings.end());
   const auto end = std::unique(buildings.begin(), buildings.end());
@@ -55,14 +52,14 @@ Json cluster_json(const std::vector<Part>& parts, int layer) {
           {"segments", parts.size()},
           {"buildings", end - buildings.begin()},
           {"flat", flat},
-          {"extent", parts.empty() ? 0.0 : parts[parts.size() / 2].descriptor->extent},
+          {"extent", parts.empty() ? 0.0 : parts[parts.size() / 2].facts.extent},
           {"area", area}};
 }
 
-Json members_json(const Building& b, int layers) {
+Json members_json(const std::vector<PartFacts>& parts, int layers) {
   std::vector<int> count(static_cast<std::size_t>(layers), 0);
-  for (const int layer : b.layer_of_segment)
-    if (layer >= 0 && layer < layers) ++count[layer];
+  for (const PartFacts& p : parts)
+    if (p.layer >= 0 && p.layer < layers) ++count[p.layer];
   return count;
 }
 
@@ -99,20 +96,23 @@ class Between {
   std::vector<double> sums_, counts_;
 };
 
-void add_similarity(Json& json, const std::vector<Part>& parts, const Options& options) {
+void add_similarity(Json& json, const std::vector<Part>& parts, const DescriptorOf& descriptor_of,
+                    const Options& options) {
+  std::vector<Descriptor> descriptors;
+  for (const Part& p : parts) descriptors.push_back(descriptor_of(p.building, p.segment));
   std::string values;
   Between between(options.layers);
   Json layer = Json::array(), building = Json::array(), segment = Json::array(),
        extent = Json::array();
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    layer.push_back(parts[i].layer);
+    layer.push_back(parts[i].facts.layer);
     building.push_back(parts[i].building);
     segment.push_back(parts[i].segment);
-    extent.push_back(parts[i].descriptor->extent);
+    extent.push_back(parts[i].facts.extent);
     for (std::size_t j = i; j < parts.size(); ++j) {
-      const double s = segment_similarity(*parts[i].descriptor, *parts[j].descriptor, options.eta);
+      const double s = segment_similarity(descriptors[i], descriptors[j], options.eta);
       values += static_cast<char>(std::lround(255 * std::clamp(s, 0.0, 1.0)));
-      if (i != j) between.add(parts[i].layer, parts[j].layer, s);
+      if (i != j) between.add(parts[i].facts.layer, parts[j].facts.layer, s);
     }
   }
   json["similarity"] = {{"layer", layer},
@@ -125,21 +125,41 @@ void add_similarity(Json& json, const std::vector<Part>& parts, const Options& o
 
 }  // namespace
 
-std::string parts_json(const Scene& scene, const Options& options) {
-  const std::vector<Part> parts = sorted_parts(scene, options.layers);
+std::vector<PartFacts> parts_of(const Building& b) {
+  std::vector<PartFacts> parts;
+  for (std::size_t s = 0; s < std::min(b.descriptors.size(), b.layer_of_segment.size()); ++s)
+    parts.push_back({b.layer_of_segment[s], b.descriptors[s].extent, b.descriptors[s].area,
+                     b.descriptors[s].is_flat});
+  return parts;
+}
+
+std::string parts_json(const std::vector<std::vector<PartFacts>>& buildings,
+                       const DescriptorOf& descriptor_of, const Options& options) {
+  const std::vector<Part> parts = sorted_parts(buildings, options.layers);
   Json json;
   json["clusters"] = Json::array();
   for (int layer = 0; layer < options.layers; ++layer) {
     std::vector<Part> own;
     std::copy_if(parts.begin(), parts.end(), std::back_inserter(own),
-                 [layer](const Part& p) { return p.layer == layer; });
+                 [layer](const Part& p) { return p.facts.layer == layer; });
     json["clusters"].push_back(cluster_json(own, layer));
   }
   json["members"] = Json::array();
-  for (const Building& b : scene.buildings)
+  for (const std::vector<PartFacts>& b : buildings)
     json["members"].push_back(members_json(b, options.layers));
-  if (!parts.empty()) add_similarity(json, pick(parts), options);
+  if (!parts.empty()) add_similarity(json, pick(parts), descriptor_of, options);
   return json.dump();
+}
+
+std::string parts_json(const Scene& scene, const Options& options) {
+  std::vector<std::vector<PartFacts>> parts;
+  for (const Building& b : scene.buildings) parts.push_back(parts_of(b));
+  return parts_json(
+      parts,
+      [&](std::size_t building, std::size_t segment) {
+        return scene.buildings[building].descriptors[segment];
+      },
+      options);
 }
 
 }  // namespace colod

@@ -1,7 +1,9 @@
 // What the co-analysis made of the segments, for the report's page: clusters and similarities.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "core/options.h"
 #include "pipeline/pipeline.h"
@@ -21,5 +23,19 @@ namespace colod {
 /// Segments on layers that `options` has not are left out. A few milliseconds whatever the scene's
 /// size; the same text for any number of threads.
 std::string parts_json(const Scene& scene, const Options& options);
+
+/// What the page counts of a segment.
+struct PartFacts {
+  int layer = 0;
+  double extent = 0, area = 0;  ///< metres, m²
+  bool is_flat = false;
+};
+std::vector<PartFacts> parts_of(const Building& building);
+
+using DescriptorOf = std::function<Descriptor(std::size_t building, std::size_t segment)>;
+
+/// The same of buildings that are not in memory; descriptors of the picked segments are asked for.
+std::string parts_json(const std::vector<std::vector<PartFacts>>& buildings,
+                       const DescriptorOf& descriptor_of, const Options& options);
 
 }  // namespace colod

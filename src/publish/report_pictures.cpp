@@ -130,6 +130,17 @@ std::string draw_level(const ExportLevel& level, const Mesh& mesh, const Preview
 
 Color layer_color(int layer) { return kLayerColors[static_cast<std::size_t>(layer) % 8]; }
 
+std::vector<std::string> css_layer_colors(int layers) {
+  std::vector<std::string> colors;
+  for (int layer = 0; layer < layers; ++layer) {
+    const Color c = layer_color(layer);
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", c[0], c[1], c[2]);
+    colors.push_back(text);
+  }
+  return colors;
+}
+
 PictureOptions picture_options(std::size_t buildings, int layers) {
   PictureOptions o;
   const std::size_t pictures = std::max<std::size_t>(1, buildings) * (1 + layers);
@@ -211,6 +222,13 @@ void Gallery::draw(Building& b) {
   } catch (const std::exception& e) {  // a building is not lost for want of its picture
     b.warnings.push_back(std::string("no pictures: ") + e.what());
   }
+}
+
+std::vector<std::string> Gallery::take(const std::string& building) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> own = std::move(pictures_[building]);
+  pictures_.erase(building);
+  return own;
 }
 
 std::vector<std::vector<std::string>> Gallery::take(const Scene& scene) {

@@ -38,6 +38,8 @@ std::vector<std::string> draw_looks(const Building& building, const ExportBuildi
 
 /// The colour of what appears on a layer.
 Color layer_color(int layer);
+/// Of layers 0 … layers − 1, as CSS writes them.
+std::vector<std::string> css_layer_colors(int layers);
 
 /// Draws buildings when their layers are done and their sources still there. A building that cannot
 /// be drawn gets a warning. `buildings`: how many there are.
@@ -50,6 +52,8 @@ class Gallery {
   /// Lives no longer than the gallery.
   Observer observer();
 
+  /// One building's pictures, or none.
+  std::vector<std::string> take(const std::string& building);
   /// Per building of the scene: its pictures, or none.
   std::vector<std::vector<std::string>> take(const Scene& scene);
 

@@ -224,6 +224,25 @@ bool Store::has_meshes(const std::string& name) const {
   return impl_->has_row("SELECT 1 FROM layer WHERE building = ?1", name);
 }
 
+std::vector<std::string> Store::unmeshed() const {
+  std::vector<std::string> names;
+  Statement s = impl_->read(
+      "SELECT name FROM building b WHERE failure = '' AND NOT EXISTS (SELECT 1 FROM layer WHERE "
+      "building = b.name) ORDER BY name");
+  while (s.step()) names.push_back(s.text());
+  return names;
+}
+
+std::string Store::meshes_key(const std::string& name) const {
+  std::string text = segments_key(name) + options_text(options()) + rules_version();
+  Statement s = impl_->read("SELECT layer FROM segment WHERE building = ?1 ORDER BY id");
+  s.bind(name);
+  while (s.step()) text += ' ' + std::to_string(s.integer());
+  Hash hash;
+  hash.add(text.data(), text.size());
+  return hash.hex();
+}
+
 Building Store::building(const std::string& name) const {
   Building b;
   b.source.name = name;

@@ -53,6 +53,12 @@ class Store {
   void put_meshes(const Building& building);
   bool has_meshes(const std::string& name) const;
 
+  /// Names of buildings that have neither failed nor meshes yet.
+  std::vector<std::string> unmeshed() const;
+  /// What a building's meshes are made from: a hash of its segments' key, their layers, the options
+  /// and the rules.
+  std::string meshes_key(const std::string& name) const;
+
   /// All that is there of a building; timings are not kept.
   Building building(const std::string& name) const;
 

@@ -230,6 +230,71 @@ TEST_CASE("a prior gives a single building the layers of a city, in build and in
   CHECK(slurp(f.path() / "stages" / "report.json").find("\"prior\": true") != std::string::npos);
 }
 
+TEST_CASE("cells that are exported apart and merged give what one run gives") {
+  Folder f;
+  const std::string plan = f / "w/plan.json", log = f / "log", out = f / "out", one = f / "one";
+  REQUIRE(
+      run({"synth", "-o", f / "in", "--buildings", "3", "--texture", "--texel-size", "0.2"}, log));
+  REQUIRE(run({"plan", f / "in", "-o", plan, "--cells", "2", "--ns", "12", "--nr", "16"}, log));
+  for (const char* stage : {"segment", "analyze", "mesh"})
+    REQUIRE(run({stage, "--plan", plan}, log));
+  const std::vector<std::string> output{"--quiet", "--format", "glb,3dtiles,engine"};
+  const auto call = [&](std::vector<std::string> a) {
+    a.insert(a.end(), output.begin(), output.end());
+    return run(a, log);
+  };
+  REQUIRE(call({"export", "--plan", plan, "-o", one}));
+  const std::vector<std::string> first{"export", "--plan", plan, "--shard", "0/2", "-o", out};
+  const std::vector<std::string> second{"export", "--plan", plan, "--shard", "1/2", "-o", out};
+  const std::vector<std::string> merge{"merge", "--plan", plan, "-o", out};
+  REQUIRE(call(first));
+  CHECK_FALSE(call(merge));  // a cell is missing
+  CHECK(count_of(slurp(log), "run colod export --plan " + plan + " --shard 1/2") == 1);
+  REQUIRE(call(second));
+  CHECK_FALSE(run({"merge", "--plan", plan, "-o", out, "--quiet"}, log));  // other formats
+  CHECK(count_of(slurp(log), "other options") == 1);
+  CHECK_FALSE(fs::exists(fs::path(out) / "tileset.json"));
+  REQUIRE(call(merge));
+  const auto check_same = [&] {
+    std::size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(one)) {
+      const fs::path path = fs::relative(entry.path(), one);
+      if (!entry.is_regular_file() || path.stem() == "report") continue;
+      INFO(path);
+      CHECK(slurp(entry.path()) == slurp(out / path));
+      ++files;
+    }
+    CHECK(files > 10);
+  };
+  check_same();
+
+  // A file that was cut, and what was exported of a cell that was damaged: made again, the rest
+  // left as it is.
+  fs::path glb;
+  for (const auto& entry : fs::directory_iterator(fs::path(out) / "buildings")) glb = entry.path();
+  std::ofstream(glb, std::ios::trunc) << "cut";
+  CHECK_FALSE(call(merge));
+  CHECK(count_of(slurp(log), "missing or cut") == 1);
+  REQUIRE(call(first));
+  REQUIRE(call(second));
+  REQUIRE(call(merge));
+  check_same();
+  std::ofstream(cell_export(plan, 0), std::ios::trunc) << "this was a database, and is none";
+  CHECK_FALSE(call(merge));
+  CHECK(count_of(slurp(log), "delete it, and run colod export again") == 1);
+  CHECK_FALSE(call(first));
+  fs::remove(cell_export(plan, 0));
+  REQUIRE(call(first));
+  REQUIRE(call(merge));
+  check_same();
+  {
+    const CellLock other(cell_scene(plan, 1));
+    CHECK_FALSE(call(second));
+    CHECK(count_of(slurp(log), "another run is at work") == 1);
+  }
+  CHECK_FALSE(run({"merge", "--plan", plan, "-o", out, "--format", "3tz"}, log));
+}
+
 TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees with the report") {
   Folder f;
   const std::string log = f / "log";

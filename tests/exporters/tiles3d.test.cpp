@@ -114,7 +114,7 @@ TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
     Mesh mesh = box_mesh({-6, -4, 0}, {6, 4, 7});
     for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * p;
     const ExportBuilding b{"box", "", {100, 200, 3}, {{{0}, as_polygons(mesh), 0, 0}}, ""};
-    const StandIn box = stand_in_for(b, 5);
+    const StandInBox box = stand_in_for(b, 5);
     CHECK(box.buildings == std::vector<int>{5});
     CHECK(box.error == Approx(0).margin(1e-5));
     CHECK((box.origin - Vec3(100, 200, 3)).norm() < 1e-6);
@@ -125,7 +125,7 @@ TEST_CASE("a box stands for a box without deviation, wherever it is turned") {
 
 TEST_CASE("no vertex of a building is farther from its stand-in than the error says") {
   const ExportBuilding house = three_layers("house", Vec3::Zero());
-  const StandIn box = stand_in_for(house, 0);
+  const StandInBox box = stand_in_for(house, 0);
   const RayScene scene(mesh_of(box).mesh());
   for (const Vec3& p : house.levels.back().mesh.vertices)
     if (p.z() > 0.1) CHECK(scene.nearest(p - box.origin).distance <= box.error);
@@ -140,18 +140,18 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
   for (ExportLevel& level : buildings[1].levels)
     for (Vec3& p : level.mesh.vertices) p *= 1.5;
   for (const std::string measure : {"visual", "deviation"}) {
-    std::vector<StandIn> boxes;
+    std::vector<StandInBox> boxes;
     for (const ExportBuilding& b : buildings) {
       boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size()),
                                    {.measure = measure, .visual_error = 2, .layer_gsd = {}}));
       CHECK(boxes.back().gsd > 1.15 * b.levels.front().gsd);
     }
-    std::vector<StandIn> alike = boxes;
+    std::vector<StandInBox> alike = boxes;
     agree_on_switch(alike, {.layer_gsd = {0.6, 0.3, 0}});
     agree_on_switch(boxes, {.scope = "building", .layer_gsd = {}});
     std::set<double> own, shared;
-    for (const StandIn& box : boxes) own.insert(box.gsd);
-    for (const StandIn& box : alike) shared.insert(box.gsd);
+    for (const StandInBox& box : boxes) own.insert(box.gsd);
+    for (const StandInBox& box : alike) shared.insert(box.gsd);
     CHECK(own.size() > 1);
     REQUIRE(shared.size() == 1);
     CHECK(*shared.begin() >= *own.begin());
@@ -162,14 +162,14 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
 TEST_CASE("what merging adds to a box counts by its pixels") {
   const std::vector<ExportBuilding> two = {three_layers("a", Vec3::Zero()),
                                            three_layers("b", {40, 0, 0})};
-  const StandIn a = stand_in_for(two[0], 0), b = stand_in_for(two[1], 1);
-  const StandIn merged = merge_stand_ins({a, b}, 1)[0];
+  const StandInBox a = stand_in_for(two[0], 0), b = stand_in_for(two[1], 1);
+  const StandInBox merged = merge_stand_ins({a, b}, 1)[0];
   CHECK(merged.gsd == Approx((merged.error - std::max(a.error, b.error)) / 2));
   CHECK(merged.gsd > std::max(a.gsd, b.gsd));
 }
 
 TEST_CASE("merging stand-ins keeps every building and adds up errors") {
-  std::vector<StandIn> boxes;
+  std::vector<StandInBox> boxes;
   for (const ExportBuilding& b : street(12))
     boxes.push_back(stand_in_for(b, static_cast<int>(boxes.size())));
   const double before = boxes[0].error;
@@ -177,20 +177,21 @@ TEST_CASE("merging stand-ins keeps every building and adds up errors") {
     boxes = merge_stand_ins(std::move(boxes), most);
     CHECK(boxes.size() == most);
     std::vector<int> all;
-    for (const StandIn& box : boxes)
+    for (const StandInBox& box : boxes)
       all.insert(all.end(), box.buildings.begin(), box.buildings.end());
     std::sort(all.begin(), all.end());
     std::vector<int> expected(12);
     std::iota(expected.begin(), expected.end(), 0);
     CHECK(all == expected);
-    CHECK(std::max_element(boxes.begin(), boxes.end(), [](const StandIn& a, const StandIn& b) {
-            return a.error < b.error;
-          })->error > before);
+    CHECK(
+        std::max_element(boxes.begin(), boxes.end(), [](const StandInBox& a, const StandInBox& b) {
+          return a.error < b.error;
+        })->error > before);
   }
 }
 
 TEST_CASE("a stand-in's walls and top face outwards") {
-  const StandIn box{{0}, Vec3::Zero(), 0.3, {3, 2, 5}, 0};
+  const StandInBox box{{0}, Vec3::Zero(), 0.3, {3, 2, 5}, 0};
   const PolygonMesh mesh = mesh_of(box);
   CHECK(mesh.triangles.size() == kStandInTriangles);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -228,6 +229,56 @@ TEST_CASE("at the far end stand at most 5 % of the finest triangles and bytes") 
     if (0.05 * bytes >= kLeastFile) CHECK(root.bytes.size() <= 0.05 * bytes);
     if (0.05 * bytes < 2000)
       CHECK(triangles_of(root) == static_cast<std::size_t>(kStandInTriangles * n));
+  }
+}
+
+TEST_CASE("levels that come cell by cell give the tileset that levels in memory give") {
+  std::vector<ExportBuilding> all = detailed_street(300);
+  for (std::size_t i = 0; i < all.size(); ++i) {  // colours reach up to the root's boxes
+    LevelLook& look = all[i].levels.front().look;
+    look.facet_colors.assign(all[i].levels.front().mesh.facets.size(),
+                             {static_cast<std::uint8_t>(i), 120, 60});
+  }
+  std::vector<Encoded> expected = encode_tileset(all);
+  std::vector<TileOutline> outlines;
+  std::vector<ExportBuilding> bare = all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    outlines.push_back(outline_of(all[i]));
+    for (ExportLevel& level : bare[i].levels) level.mesh = {}, level.look = {};
+  }
+  std::mutex mutex;
+  int there = 0, most = 0;
+  std::vector<Encoded> made;
+  const LevelDepot depot{.get =
+                             [&](int b) {
+                               for (std::size_t k = 0; k < all[b].levels.size(); ++k)
+                                 bare[b].levels[k] = all[b].levels[k];
+                               const std::lock_guard lock(mutex);
+                               most = std::max(most, ++there);
+                             },
+                         .drop =
+                             [&](int b) {
+                               for (ExportLevel& level : bare[b].levels)
+                                 level.mesh = {}, level.look = {};
+                               const std::lock_guard lock(mutex);
+                               --there;
+                             },
+                         .coarsest = [&](int b) { return coarsest_look(all[b].levels.front()); }};
+  const std::vector<Encoded> rest =
+      encode_tileset(bare, outlines, depot, {}, [&](const Encoded& f) { made.push_back(f); });
+  REQUIRE(!made.empty());
+  CHECK(rest.front().path == "tileset.json");
+  CHECK(there == 0);
+  CHECK(most < 256);  // of 300: never all at once
+  made.insert(made.end(), rest.begin(), rest.end());
+  const auto by_path = [](const Encoded& a, const Encoded& b) { return a.path < b.path; };
+  std::sort(made.begin(), made.end(), by_path);
+  std::sort(expected.begin(), expected.end(), by_path);
+  REQUIRE(made.size() == expected.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    INFO(made[i].path);
+    CHECK(made[i].path == expected[i].path);
+    CHECK(made[i].bytes == expected[i].bytes);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "meshes.h"
 #include "publish/report.h"
+#include "store/shelf.h"
 #include "temporary_folder.h"
 
 using namespace colod;
@@ -253,4 +254,27 @@ TEST_CASE("a scene is the same with its buildings in a temporary store") {
     }
   }
   CHECK(kept.buildings[2].failure == "gone.ply: cannot be opened");
+}
+
+TEST_CASE("a shelf keeps pieces by name, and refuses what is none") {
+  const TemporaryFile file;
+  const std::string bytes("a\0b", 3);
+  {
+    Shelf shelf(file.path, true);
+    shelf.put("one", {{"x", bytes}, {"y", "1"}});
+    shelf.put("two", {{"x", "2"}});
+    shelf.put("one", {{"x", bytes}});  // replaces all of a name
+  }
+  Shelf shelf(file.path, false);
+  CHECK(shelf.names() == std::vector<std::string>{"one", "two"});
+  CHECK(shelf.get("one", "x") == bytes);
+  CHECK(shelf.get("one", "y").empty());
+  shelf.keep_only({"two"});
+  CHECK(shelf.names() == std::vector<std::string>{"two"});
+  CHECK_THROWS_AS(Store(file.path, false), Error);
+  const TemporaryFile scene;
+  Store(scene.path, true);
+  CHECK_THROWS_AS(Shelf(scene.path, false), Error);
+  std::ofstream(file.path, std::ios::trunc) << "no database at all, but long enough to be read";
+  CHECK_THROWS_AS(Shelf(file.path, false), Error);
 }

@@ -1,0 +1,218 @@
+// Stages of a plan's cells: export of a shard, and merge.
+#include "cells.h"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include "cli.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "exporters/files.h"
+#include "job/job.h"
+#include "plan/cell_lock.h"
+#include "publish/cells.h"
+#include "store/store.h"
+
+namespace colod::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "run colod STAGE --plan … --shard I/N".
+std::string line_for(const char* stage, const std::string& plan_path, std::size_t cell,
+                     const Plan& plan) {
+  return std::string("colod ") + stage + " --plan " + plan_path + " --shard " +
+         std::to_string(cell) + "/" + std::to_string(plan.cells.size());
+}
+
+/// All cells, each whole and meshed.
+struct PlannedScene {
+  Plan plan;
+  Options options;
+  Scene scene;                                  ///< without buildings
+  std::vector<std::vector<std::string>> names;  ///< per cell
+
+  CellScene common(const OutputOptions& output) const {
+    return {output, options, scene, plan.building_count()};
+  }
+};
+
+void check_meshed(const Store& store, const std::string& path, const std::string& remedy) {
+  const std::size_t missing = store.unmeshed().size();
+  if (missing > 0)
+    throw Error(Stage::kInput, path,
+                std::to_string(missing) + " of its buildings have no meshes yet: run " + remedy);
+}
+
+/// What one cell brings to the scene.
+void add_cell(const std::string& plan_path, std::size_t cell, PlannedScene& all,
+              std::vector<BuildingSights>& sights, std::set<std::string>& names) {
+  check_whole(all.plan, plan_path, cell);
+  const std::string path = cell_scene(plan_path, cell);
+  const Store store(path, false);
+  check_meshed(store, path, line_for("mesh", plan_path, cell, all.plan));
+  if (cell == 0) {
+    all.options = store.options();
+    store.get_coanalysis(all.scene);
+  }
+  store.get_attributes(all.scene.attributes);
+  for (BuildingSights& s : store.sights()) sights.push_back(std::move(s));
+  all.names.push_back(store.names());
+  for (const std::string& name : all.names.back())
+    if (!names.insert(name).second)
+      throw Error(Stage::kInput, name, "stands in two of the plan's cells");
+}
+
+PlannedScene read_planned(const CellArguments& a, const Log& log) {
+  PlannedScene all;
+  all.plan = read_plan(a.plan.path);
+  all.scene.failures = all.plan.failures;
+  all.scene.warnings = all.plan.warnings;
+  std::vector<BuildingSights> sights;
+  std::set<std::string> names;
+  for (std::size_t cell = 0; cell < all.plan.cells.size(); ++cell)
+    add_cell(a.plan.path, cell, all, sights, names);
+  if (names.empty())
+    throw Error(Stage::kInput, a.plan.path, "holds no building: name other inputs to colod plan");
+  all.scene.switching = plan_switches(
+      sights, all.options.layers, switch_options(a.output.options),
+      read_sights(a.prior, all.options.layers, [&](const Message& m) { log.message(m); }));
+  return all;
+}
+
+std::vector<CellBuilding> buildings_of(const Store& store, const std::vector<std::string>& names) {
+  std::vector<CellBuilding> buildings;
+  for (const std::string& name : names) buildings.push_back({name, store.meshes_key(name)});
+  return buildings;
+}
+
+HasFile looks_into(const std::string& out) {
+  return [out](const std::string& path, std::size_t bytes) {
+    std::error_code error;
+    const std::uintmax_t found = fs::file_size(fs::path(out) / path, error);
+    return !error && found == bytes;
+  };
+}
+
+int merge(const CellArguments& a) {
+  const auto start = std::chrono::steady_clock::now();
+  check_output(a.output.options);
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  const CellLock lock(a.plan.path);
+  PlannedScene all = read_planned(a, log);
+  std::vector<MergedCell> cells;
+  for (std::size_t cell = 0; cell < all.names.size(); ++cell) {
+    const std::string path = cell_export(a.plan.path, cell);
+    const std::string remedy = line_for("export", a.plan.path, cell, all.plan) + " -o " +
+                               a.output.out + " with the options that colod merge gets";
+    if (!fs::exists(path)) throw Error(Stage::kInput, path, "is not there: run " + remedy);
+    cells.push_back({path, Shelf(path, false),
+                     buildings_of(Store(cell_scene(a.plan.path, cell), false), all.names[cell]),
+                     remedy});
+  }
+  make_folder(a.output.out);
+  const MergeTasks tasks{.take = [&](const Encoded& file) { write_file(a.output.out, file); },
+                         .write = [&](const std::string& path,
+                                      const auto& body) { write_file(a.output.out, path, body); },
+                         .has_file = looks_into(a.output.out),
+                         .tell = [&](const Message& m) { log.message(m); }};
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  Scene scene = all.scene;
+  const CellOutcome outcome = merge_cells(all.common(a.output.options), scene, cells, tasks, [&] {
+    return RunTotals{seconds(), peak_memory_bytes()};
+  });
+  log_problems(scene, log);
+  for (const Message& m : outcome.messages) log.message(m);
+  log.message(summary_of(scene, outcome.tally, seconds(), a.output.out));
+  return exit_code(scene, outcome.tally);
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const Inventory& inventory) {
+  std::vector<std::string> names;
+  for (const InputFile& file : inventory.files)
+    names.insert(names.end(), file.names.begin(), file.names.end());
+  return names;
+}
+
+void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cell) {
+  const std::string path = cell_scene(plan_path, cell);
+  const std::vector<std::string> names = names_of(inventory_of(plan, cell));
+  std::size_t there = 0;
+  if (fs::exists(path)) {
+    const Store store(path, false);
+    for (const std::string& name : names) there += !store.segments_key(name).empty();
+    if (there == names.size() && store.names().size() == names.size()) return;
+  }
+  throw Error(Stage::kInput, path,
+              "has " + std::to_string(there) + " of the " + std::to_string(names.size()) +
+                  " buildings that it is to have: run " +
+                  line_for("segment", plan_path, cell, plan));
+}
+
+void for_own_cells(const PlanArguments& a, const Plan& plan,
+                   const std::function<void(std::size_t, const std::string&)>& body) {
+  const std::size_t cells = plan.cells.size();
+  for (const std::size_t cell : cells_of(shard_of(a.shard, cells), cells)) {
+    const std::string path = cell_scene(a.path, cell);
+    const CellLock lock(path);
+    body(cell, path);
+  }
+}
+
+int export_shard(const CellArguments& a) {
+  check_output(a.output.options);
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  const PlannedScene all = read_planned(a, log);
+  make_folder(a.output.out);
+  const CellScene common = all.common(a.output.options);
+  CellOutcome outcome;
+  for_own_cells(a.plan, all.plan, [&](std::size_t cell, const std::string& path) {
+    const Store store(path, false);
+    Shelf shelf(cell_export(a.plan.path, cell), true);
+    std::mutex mutex;
+    int done = 0;
+    const int count = static_cast<int>(all.names[cell].size());
+    const CellTasks tasks{.buildings = buildings_of(store, all.names[cell]),
+                          .load =
+                              [&](const std::string& name) {
+                                const std::lock_guard guard(mutex);
+                                return store.building(name);
+                              },
+                          .take = [&](const Encoded& file) { write_file(a.output.out, file); },
+                          .has_file = looks_into(a.output.out),
+                          .progress =
+                              [&](const std::string& name, bool is_new) {
+                                log.progress(name, is_new ? "files" : "already there", ++done,
+                                             count);
+                              }};
+    CellOutcome own = export_cell(common, tasks, shelf);
+    outcome.tally += own.tally;
+    for (const Message& m : own.messages) log.message(m);
+  });
+  return exit_code(Scene{}, outcome.tally);
+}
+
+Run add_merge(CLI::App& app) {
+  auto a = std::make_shared<CellArguments>();
+  app.add_option("--plan", a->plan.path,
+                 "plan.json of colod plan, whose cells colod export has exported")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--prior", a->prior,
+                 "a scene file with meshes: its buildings decide where all layers switch")
+      ->check(CLI::ExistingFile);
+  add_output_arguments(app, a->output);
+  add_run_options(app, a->run);
+  return [a] { return merge(*a); };
+}
+
+}  // namespace colod::cli
