@@ -135,6 +135,33 @@ void follow(double direction, double within, std::vector<Rough>& pieces) {
   }
 }
 
+/// A short piece across the directions is what cells and melting make of a corner, or of a step: it
+/// goes between neighbours that meet at right angles, and else stands square to one of them.
+void square_short(double direction, double most, std::vector<Rough>& pieces) {
+  const auto neighbour = [&](std::size_t k, int way) -> const Rough* {
+    const std::size_t n = k + way;
+    const bool is_one = n < pieces.size() && pieces[n].chain == pieces[k].chain;
+    return is_one && pieces[n].line >= 0 ? &pieces[n] : nullptr;
+  };
+  std::vector<Rough> kept;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    Rough r = pieces[k];
+    if (r.line < 0 && r.length < most) {
+      const Rough *a = neighbour(k, -1), *b = neighbour(k, 1);
+      if (a && b && std::abs(a->normal.dot(b->normal)) < kParallel) continue;
+      const Rough* beside = a ? a : b;
+      const Vec2 along = beside ? Vec2(-beside->normal.y(), beside->normal.x())
+                                : Vec2(std::cos(direction), std::sin(direction));
+      const bool is_square = beside || std::abs(along.dot(r.normal)) > std::sqrt(0.5);
+      const Vec2 normal = is_square ? along : Vec2(-along.y(), along.x());
+      r.normal = normal.dot(r.normal) < 0 ? Vec2(-normal) : normal;
+      r.line = 0;
+    }
+    kept.push_back(std::move(r));
+  }
+  std::swap(pieces, kept);
+}
+
 /// Parallel pieces within `tolerance` share a line; long ones say where it is.
 std::vector<Line> gather(double tolerance, std::vector<Rough>& pieces) {
   std::vector<int> order(pieces.size());
@@ -306,6 +333,7 @@ Borders find_borders(const Field& field, const Labels& labels, const std::vector
   follow(direction, kFollow, rough);
   if (const auto second = main_direction(rough, kSecondShare * total_length(rough)))
     follow(*second, kFollow, rough);
+  square_short(direction, kOblique * tolerance, rough);
   Borders borders;
   borders.lines = gather(tolerance, rough);
   fit_lines(rough, walls, tolerance, borders.lines);

@@ -70,6 +70,7 @@ constexpr double kSpread = 0.07;       // radians (4°) that pieces of one direc
 constexpr double kFollow = 0.26;       // radians (15°): a piece takes the building's direction …
 constexpr double kShortPiece = 3;      // metres: … twice that if shorter
 constexpr double kSecondShare = 0.15;  // of all length: another direction
+constexpr double kOblique = 5;         // tolerances: what is shorter and oblique is a corner
 constexpr double kParallel = 0.05;     // sine between pieces that may share a line
 constexpr double kLeastSine = 0.25;    // between lines that make a corner
 constexpr double kReach = 3;           // tolerances that a corner may move

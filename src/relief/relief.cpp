@@ -32,6 +32,7 @@ struct Plan {
   Labels labels;
   Borders borders;
   double noise = 0, tolerance = 0;
+  double direction = 0;  ///< radians: of most border
 
   Vec3 raised(const Vec2& p, int label) const {
     const double z =
@@ -70,24 +71,26 @@ double patch_noise(const std::vector<Patch>& patches) {
   return 0;
 }
 
-Plan draw_plan(const Mesh& mesh, double edge) {
+Plan draw_plan(const Mesh& mesh, const Melting& melting) {
+  const double edge = melting.edge;
   const RayScene rays(mesh);
   Plan plan;
   plan.field = make_field(mesh, rays, edge);
   plan.ground = find_ground(plan.field, mesh);
   const double span = std::max(kLeastSpan, edge);
-  plan.noise = std::clamp(roof_noise(plan.field), kLeastNoise, kMostNoise);
+  plan.noise = std::clamp(std::max(roof_noise(plan.field), melting.bulge), kLeastNoise, kMostNoise);
   const std::vector<char> is_roof = roof_cells(plan.field, plan.ground);
   Patches patches = find_patches(plan.field, is_roof, plan.noise, span);
   plan.noise = std::clamp(patch_noise(patches.patches), plan.noise, kMostNoise);
   patches = find_patches(plan.field, is_roof, plan.noise, span);
-  plan.labels = label_field(plan.field, plan.ground, std::move(patches), plan.noise, span);
   plan.tolerance = std::clamp(std::max(kToleranceEdge * edge, kToleranceNoise * plan.noise),
                               kLeastTolerance, kMostTolerance);
-  const double direction = find_direction(plan.field, plan.labels, plan.tolerance);
-  plan.labels.patches = regular_roofs(plan.field, plan.labels, direction, plan.noise);
+  plan.labels = label_field(plan.field, plan.ground, std::move(patches),
+                            {.noise = plan.noise, .span = span, .tolerance = plan.tolerance});
+  plan.direction = find_direction(plan.field, plan.labels, plan.tolerance);
+  plan.labels.patches = regular_roofs(plan.field, plan.labels, plan.direction, plan.noise);
   plan.borders =
-      find_borders(plan.field, plan.labels, wall_samples(mesh), direction, plan.tolerance);
+      find_borders(plan.field, plan.labels, wall_samples(mesh), plan.direction, plan.tolerance);
   return plan;
 }
 
@@ -241,12 +244,24 @@ double supported_share(const Mesh& mesh, const Relief& relief) {
   return drawn > 0 ? seen / drawn : 0;
 }
 
-}  // namespace
+/// The mesh about the z axis.
+Mesh turned(Mesh mesh, double angle) {
+  const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
+  for (Vec3& v : mesh.vertices) v = turn * v;
+  return mesh;
+}
 
-std::optional<Relief> find_relief(const Mesh& mesh) {
-  const Melting melting = measure_melting(mesh);
-  if (!melting.is_melted()) return std::nullopt;
-  const Plan plan = draw_plan(mesh, melting.edge);
+void turn(Relief& relief, double angle) {
+  const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
+  for (Relief::Part& part : relief.parts) {
+    part.normal = turn * part.normal;
+    for (std::vector<Vec3>& ring : part.rings)
+      for (Vec3& v : ring) v = turn * v;
+  }
+}
+
+std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
+  const Plan plan = draw_plan(mesh, melting);
   Relief relief;
   relief.foot = plan.ground.foot;
   relief.noise = plan.noise;
@@ -259,6 +274,17 @@ std::optional<Relief> find_relief(const Mesh& mesh) {
   if (supported_share(mesh, relief) < kLeastSupport ||
       explained_share(mesh, relief, melting.reach()) < kExplained)
     return std::nullopt;
+  return relief;
+}
+
+}  // namespace
+
+std::optional<Relief> find_relief(const Mesh& mesh) {
+  const Melting melting = measure_melting(mesh);
+  if (!melting.is_melted()) return std::nullopt;
+  const double yaw = draw_plan(mesh, melting).direction;
+  std::optional<Relief> relief = read_relief(turned(mesh, -yaw), melting);
+  if (relief) turn(*relief, yaw);
   return relief;
 }
 
