@@ -22,9 +22,11 @@ constexpr double kExactBulge = 0.003;                 // metres: less is exact, 
 constexpr double kSteepest = 0.4, kLeastLean = 0.04;  // |z| of walls' normals, and its mean
 constexpr double kCoarseBulge = 0.08;                 // metres, and …
 constexpr double kCoarse = 0.6, kToldBulges = 4;      // … metres of edge, or of so many bulges
+constexpr double kWide = 1.2, kWideBulge = 0.05;      // metres of edge that tell no window at all
 constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
-constexpr double kLeastSupport = 0.1;  // of the walls that are drawn: seen, in part
-constexpr double kExplained = 0.7;     // of the surface: near roofs and walls
+constexpr double kLeastSupport = 0.1;   // of the walls that are drawn: seen, in part
+constexpr double kExplained = 0.7;      // of the surface: near roofs and walls …
+constexpr double kWideExplained = 0.5;  // … where nothing else can be told
 
 // Scales.
 constexpr double kLeastSpan = 1;                         // metres that bumps are wide, at least
@@ -85,12 +87,13 @@ constexpr double kLevelSlope = 0.06;  // metres a metre (3.4°): level
 constexpr double kSquare = 0.35;      // radians (20°) between a slope and the building's direction
 constexpr double kSameTilt = 0.09;    // metres a metre between slopes that get one tilt
 constexpr double kExcused = 0.5;      // of the noise, that this may add to a roof's residual
-constexpr double kLeastStep = 0.3;    // metres, or …
-constexpr double kStepNoise = 1.5;    // … times the noise: a step between roofs is a wall
-constexpr double kWallReach = 1.2;    // metres between a steep face and its wall
-constexpr double kBeside = 1.5;       // metres into the building that its neighbours hang over
-constexpr double kRoofReach = 1;      // metres between a face and its roof
-constexpr double kFacing = 0.7;       // cosine between a steep face and the wall that it is of
-constexpr double kLeastWall = 2;      // m² of such faces: a wall is seen
+constexpr double kSameRoof = 2;  // times the noise: a roof this near a larger one's plane is of it
+constexpr double kLeastStep = 0.3;  // metres, or …
+constexpr double kStepNoise = 1.5;  // … times the noise: a step between roofs is a wall
+constexpr double kWallReach = 1.2;  // metres between a steep face and its wall
+constexpr double kBeside = 1.5;     // metres into the building that its neighbours hang over
+constexpr double kRoofReach = 1;    // metres between a face and its roof
+constexpr double kFacing = 0.7;     // cosine between a steep face and the wall that it is of
+constexpr double kLeastWall = 2;    // m² of such faces: a wall is seen
 
 }  // namespace colod::parameters::relief

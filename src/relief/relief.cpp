@@ -88,7 +88,7 @@ Plan draw_plan(const Mesh& mesh, const Melting& melting) {
   plan.labels = label_field(plan.field, plan.ground, std::move(patches),
                             {.noise = plan.noise, .span = span, .tolerance = plan.tolerance});
   plan.direction = find_direction(plan.field, plan.labels, plan.tolerance);
-  plan.labels.patches = regular_roofs(plan.field, plan.labels, plan.direction, plan.noise);
+  regular_roofs(plan.field, plan.direction, plan.noise, plan.labels);
   plan.borders =
       find_borders(plan.field, plan.labels, wall_samples(mesh), plan.direction, plan.tolerance);
   return plan;
@@ -272,7 +272,8 @@ std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
   for (Relief::Part& wall : walls_of(plan, pieces)) relief.parts.push_back(std::move(wall));
   share_out(mesh, plan, pieces, relief);
   if (supported_share(mesh, relief) < kLeastSupport ||
-      explained_share(mesh, relief, melting.reach()) < kExplained)
+      explained_share(mesh, relief, melting.reach()) <
+          (melting.is_wide() ? kWideExplained : kExplained))
     return std::nullopt;
   return relief;
 }
