@@ -57,13 +57,17 @@ class Labeller {
         label_(std::move(patches.patch_of_cell)),
         noise_(scales.noise),
         span_(scales.span),
-        tolerance_(scales.tolerance) {
-    for (int i = 0; i < f_.size(); ++i)
-      if (label_[i] < 0) label_[i] = ground_.is_ground[i] ? kOutside : kOpen;
-    open_outside();
+        tolerance_(scales.tolerance) {}
+
+  Labels squared() {
+    square();
+    return {std::move(label_), std::move(patches_)};
   }
 
   Labels run() {
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] < 0) label_[i] = ground_.is_ground[i] ? kOutside : kOpen;
+    open_outside();
     drop_clutter();
     spread(true);
     for (int round = 0; round < kSmoothings; ++round) smooth();
@@ -288,6 +292,12 @@ class Labeller {
 Labels label_field(const Field& field, const Ground& ground, Patches patches,
                    const Scales& scales) {
   return Labeller(field, ground, std::move(patches), scales).run();
+}
+
+Labels square_labels(const Field& field, const Ground& ground, Labels labels,
+                     const Scales& scales) {
+  return Labeller(field, ground, {std::move(labels.patches), std::move(labels.of_cell)}, scales)
+      .squared();
 }
 
 }  // namespace colod::relief

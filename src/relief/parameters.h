@@ -81,12 +81,19 @@ constexpr double kMelted = 1.6;        // … metres: a melted corner is no long
 constexpr double kLeastCrease = 0.12;  // metres a metre between the slopes of two roofs that meet
 constexpr double kCreaseReach = 2;     // tolerances between such a border and where planes meet
 
+// Blocks on roofs.
+constexpr double kBlockNoise = 2;        // times the noise: what stands off a roof
+constexpr std::size_t kMostBlocks = 24;  // of one building
+constexpr double kSloping = 0.8;         // of a level top's residual: a top slopes as its roof does
+constexpr double kSeenTop = 0.4;         // of its cells that are no walls
+constexpr double kFlatTop = 0.45;        // of a block's rise: residual of its top
+
 // Roofs and walls.
-constexpr double kTrim = 2.5;         // times the noise: cells farther off say nothing of a roof
-constexpr double kLevelSlope = 0.06;  // metres a metre (3.4°): level
-constexpr double kSquare = 0.35;      // radians (20°) between a slope and the building's direction
-constexpr double kSameTilt = 0.09;    // metres a metre between slopes that get one tilt
-constexpr double kExcused = 0.5;      // of the noise, that this may add to a roof's residual
+constexpr double kTrim = 2.5;        // times the noise: cells farther off say nothing of a roof
+constexpr double kLevelSlope = 0.1;  // metres a metre (5.7°): level
+constexpr double kSquare = 0.79;  // radians (45°, any) between a slope and the building's direction
+constexpr double kSameTilt = 0.09;  // metres a metre between slopes that get one tilt
+constexpr double kExcused = 1;      // of the noise, that this may add to a roof's residual
 constexpr double kSameRoof = 2;  // times the noise: a roof this near a larger one's plane is of it
 constexpr double kLeastStep = 0.3;  // metres, or …
 constexpr double kStepNoise = 1.5;  // … times the noise: a step between roofs is a wall

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "blocks.h"
 #include "borders.h"
 #include "core/rays.h"
 #include "field.h"
@@ -85,10 +86,12 @@ Plan draw_plan(const Mesh& mesh, const Melting& melting) {
   patches = find_patches(plan.field, is_roof, plan.noise, span);
   plan.tolerance = std::clamp(std::max(kToleranceEdge * edge, kToleranceNoise * plan.noise),
                               kLeastTolerance, kMostTolerance);
-  plan.labels = label_field(plan.field, plan.ground, std::move(patches),
-                            {.noise = plan.noise, .span = span, .tolerance = plan.tolerance});
+  const Scales scales{.noise = plan.noise, .span = span, .tolerance = plan.tolerance};
+  plan.labels = label_field(plan.field, plan.ground, std::move(patches), scales);
   plan.direction = find_direction(plan.field, plan.labels, plan.tolerance);
   regular_roofs(plan.field, plan.direction, plan.noise, plan.labels);
+  raise_blocks(plan.field, scales, plan.labels);
+  plan.labels = square_labels(plan.field, plan.ground, std::move(plan.labels), scales);
   plan.borders =
       find_borders(plan.field, plan.labels, wall_samples(mesh), plan.direction, plan.tolerance);
   return plan;
