@@ -115,8 +115,9 @@ std::optional<Piece> step_at(const Plan& plan, Piece piece) {
   };
   double first = step(piece.from), last = step(piece.to);
   const double least = std::max(kLeastStep, kStepNoise * plan.noise);
-  if (std::abs(first + last) / 2 < least && std::max(std::abs(first), std::abs(last)) < 2 * least)
-    return std::nullopt;
+  const double mean = std::abs(first + last) / 2;
+  const bool is_tapered = first * last < 0 || std::min(std::abs(first), std::abs(last)) < least / 2;
+  if (mean < (is_tapered ? 2 * least : least)) return std::nullopt;
   if (first + last < 0) {
     std::swap(piece.from, piece.to), std::swap(piece.left, piece.right);
     std::swap(first, last), first = -first, last = -last;
