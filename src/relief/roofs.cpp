@@ -126,7 +126,8 @@ void regular_roofs(const Field& field, double direction, double noise, Labels& l
   for (std::size_t p = 0; p < roofs.size(); ++p)
     if (const double own = roofs[p].slope.norm(); own > 0 && samples[p].size() >= 4)
       roofs[p] = with_slope(samples[p], roofs[p], roofs[p].slope * (tilt[p] / own), excused);
-  const std::vector<int> lead = shared_planes(samples, roofs, kSameRoof * noise);
+  const std::vector<int> lead =
+      shared_planes(samples, roofs, std::max(kSameRise, kSameRoof * noise));
   for (int& l : labels.of_cell)
     if (l >= 0) l = lead[l];
 }
