@@ -91,17 +91,16 @@ constexpr double kFlatTop = 0.45;        // of a block's rise: residual of its t
 // Roofs and walls.
 constexpr double kTrim = 2.5;        // times the noise: cells farther off say nothing of a roof
 constexpr double kLevelSlope = 0.1;  // metres a metre (5.7°): level
-constexpr double kSquare = 0.79;  // radians (45°, any) between a slope and the building's direction
-constexpr double kSameTilt = 0.09;  // metres a metre between slopes that get one tilt
-constexpr double kExcused = 1;      // of the noise, that this may add to a roof's residual
-constexpr double kSameRoof = 2;     // times the noise, or …
-constexpr double kSameRise = 0.2;   // … metres from a larger roof's plane: a roof is of it
-constexpr double kLeastStep = 0.3;  // metres, or …
-constexpr double kStepNoise = 1.5;  // … times the noise: a step between roofs is a wall
-constexpr double kWallReach = 1.2;  // metres between a steep face and its wall
-constexpr double kBeside = 1.5;     // metres into the building that its neighbours hang over
-constexpr double kRoofReach = 1;    // metres between a face and its roof
-constexpr double kFacing = 0.7;     // cosine between a steep face and the wall that it is of
-constexpr double kLeastWall = 2;    // m² of such faces: a wall is seen
+constexpr double kSameTilt = 0.09;   // metres a metre between slopes that get one tilt
+constexpr double kExcused = 1;       // of the noise, that this may add to a roof's residual
+constexpr double kSameRoof = 2;      // times the noise, or …
+constexpr double kSameRise = 0.2;    // … metres from a larger roof's plane: a roof is of it
+constexpr double kLeastStep = 0.3;   // metres, or …
+constexpr double kStepNoise = 1.5;   // … times the noise: a step between roofs is a wall
+constexpr double kWallReach = 1.2;   // metres between a steep face and its wall
+constexpr double kBeside = 1.5;      // metres into the building that its neighbours hang over
+constexpr double kRoofReach = 1;     // metres between a face and its roof
+constexpr double kFacing = 0.7;      // cosine between a steep face and the wall that it is of
+constexpr double kLeastWall = 2;     // m² of such faces: a wall is seen
 
 }  // namespace colod::parameters::relief

@@ -63,7 +63,6 @@ Vec2 squared(const Vec2& slope, double direction) {
   if (tilt < kLevelSlope) return Vec2::Zero();
   const double angle = std::atan2(slope.y(), slope.x());
   const double off = std::remainder(angle - direction, std::numbers::pi / 2);
-  if (std::abs(off) > kSquare) return slope;
   return tilt * std::cos(off) * Vec2(std::cos(angle - off), std::sin(angle - off));
 }
 

@@ -50,8 +50,6 @@ std::vector<Parameter> melted_numbers() {
        "tolerances: a piece of border that is shorter and follows no direction is a corner or "
        "step"},
       {"level_slope", "", relief::kLevelSlope, "of a roof that may be level"},
-      {"square", "rad", relief::kSquare,
-       "between a roof's slope and the building's direction: any, where the noise excuses it"},
       {"excused", "", relief::kExcused,
        "of the noise, that this may add to a roof's residual; with half of it eaves were level on "
        "58 % of the length, not 95"},
