@@ -22,6 +22,9 @@ namespace {
 using namespace parameters::coanalysis;
 
 constexpr double kLeastTouch = 0.3;  // metres
+constexpr double kUpright = 0.01;    // |z| of a wall's normal, at most
+constexpr double kOnRoof = 0.02;     // metres between a wall's end and the roof that it hangs from
+constexpr double kLeastHang = 0.1;   // metres that it hangs, half of its height
 
 struct Piece {
   Vec3 a, b, c;
@@ -145,6 +148,34 @@ double small_area(const Planes& planes, const Segments& segments,
   return small;
 }
 
+// Read as a relief (relief/relief.h): its ground was parted from its roofs and walls.
+bool is_relief(const Planes& planes) {
+  return std::find(planes.plane_of_item.begin(), planes.plane_of_item.end(), kAround) !=
+         planes.plane_of_item.end();
+}
+
+// A wall that ends in the roof above it.
+bool hangs_from(const Plane& wall, const Plane& roof) {
+  if (std::abs(wall.normal.z()) > kUpright || roof.normal.z() <= kUpright) return false;
+  const auto above = [&](const Vec3& v) { return roof.normal.dot(v) - roof.offset; };
+  if (above(wall.centroid) > -kLeastHang) return false;
+  const Box around = grown(bounding_box(roof.outline.vertices), kOnRoof);
+  return std::count_if(
+             wall.outline.vertices.begin(), wall.outline.vertices.end(), [&](const Vec3& v) {
+               return std::abs(above(v)) < kOnRoof && (v.array() >= around.min.array()).all() &&
+                      (v.array() <= around.max.array()).all();
+             }) >= 2;
+}
+
+// Roofs of a relief have all their walls: without one they would end where another plane passes.
+void add_hanging_walls(const Planes& planes, std::vector<char>& is_in) {
+  if (!is_relief(planes)) return;
+  const std::vector<char> before = is_in;
+  for (std::size_t p = 0; p < is_in.size(); ++p)
+    for (std::size_t q = 0; q < before.size() && !is_in[p]; ++q)
+      is_in[p] = before[q] && hangs_from(planes.planes[p], planes.planes[q]);
+}
+
 }  // namespace
 
 std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
@@ -161,6 +192,7 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
       is_in[p] = layer_of_segment[s] <= k && !(layer_of_segment[s] == 0 && is_out[p]);
       is_out[p] = 1;
     }
+  add_hanging_walls(planes, is_in);
 
   std::vector<Box> boxes;
   for (const Plane& p : planes.planes) boxes.push_back(bounding_box(p.outline.vertices));

@@ -80,9 +80,24 @@ Chain started_at_corner(Chain chain) {
   return chain;
 }
 
-std::vector<Chain> chains_of(const Field& field, const Labels& labels) {
+/// A loop that begins amid its longest piece: no corner is at its end.
+Chain started_amid_wall(Chain chain, double tolerance) {
+  if (chain.first != chain.last || chain.points.size() < 3) return chain;
+  chain = started_at_corner(std::move(chain));
+  const std::vector<int> cuts = cuts_of(chain, tolerance);
+  int longest = 0;
+  for (int k = 0; k + 1 < static_cast<int>(cuts.size()); ++k)
+    if (cuts[k + 1] - cuts[k] > cuts[longest + 1] - cuts[longest]) longest = k;
+  chain.points.pop_back();
+  const int start = (cuts[longest] + cuts[longest + 1]) / 2;
+  std::rotate(chain.points.begin(), chain.points.begin() + start, chain.points.end());
+  chain.points.push_back(chain.points.front());
+  return chain;
+}
+
+std::vector<Chain> chains_of(const Field& field, const Labels& labels, double tolerance) {
   std::vector<Chain> chains = trace_chains(field, labels.of_cell);
-  for (Chain& c : chains) c = started_at_corner(std::move(c));
+  for (Chain& c : chains) c = started_amid_wall(std::move(c), tolerance);
   return chains;
 }
 
@@ -133,6 +148,33 @@ void follow(double direction, double within, std::vector<Rough>& pieces) {
     r.normal = {std::cos(angle - off), std::sin(angle - off)};
     r.line = 0;
   }
+}
+
+/// A short piece across the directions is what cells and melting make of a corner, or of a step: it
+/// goes between neighbours that meet at right angles, and else stands square to one of them.
+void square_short(double direction, double most, std::vector<Rough>& pieces) {
+  const auto neighbour = [&](std::size_t k, int way) -> const Rough* {
+    const std::size_t n = k + way;
+    const bool is_one = n < pieces.size() && pieces[n].chain == pieces[k].chain;
+    return is_one && pieces[n].line >= 0 ? &pieces[n] : nullptr;
+  };
+  std::vector<Rough> kept;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    Rough r = pieces[k];
+    if (r.line < 0 && r.length < most) {
+      const Rough *a = neighbour(k, -1), *b = neighbour(k, 1);
+      if (a && b && std::abs(a->normal.dot(b->normal)) < kParallel) continue;
+      const Rough* beside = a ? a : b;
+      const Vec2 along = beside ? Vec2(-beside->normal.y(), beside->normal.x())
+                                : Vec2(std::cos(direction), std::sin(direction));
+      const bool is_square = beside || std::abs(along.dot(r.normal)) > std::sqrt(0.5);
+      const Vec2 normal = is_square ? along : Vec2(-along.y(), along.x());
+      r.normal = normal.dot(r.normal) < 0 ? Vec2(-normal) : normal;
+      r.line = 0;
+    }
+    kept.push_back(std::move(r));
+  }
+  std::swap(pieces, kept);
 }
 
 /// Parallel pieces within `tolerance` share a line; long ones say where it is.
@@ -287,6 +329,16 @@ void fit_lines(const std::vector<Rough>& pieces, const std::vector<WallSample>& 
   }
 }
 
+/// To the line through all of its points: ends alone lie off the wall.
+Vec2 fitted_normal(const Rough& r) {
+  const Vec2 middle = r.middle();
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Vec2& p : r.points) spread += (p - middle) * (p - middle).transpose();
+  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const Vec2 normal(-std::sin(angle), std::cos(angle));
+  return normal.dot(r.normal) < 0 ? Vec2(-normal) : normal;
+}
+
 double total_length(const std::vector<Rough>& pieces) {
   double total = 0;
   for (const Rough& r : pieces) total += r.length;
@@ -296,16 +348,30 @@ double total_length(const std::vector<Rough>& pieces) {
 }  // namespace
 
 double find_direction(const Field& field, const Labels& labels, double tolerance) {
-  return main_direction(rough_pieces(chains_of(field, labels), tolerance), 0).value_or(0);
+  std::vector<Chain> chains = chains_of(field, labels, tolerance);
+  std::erase_if(chains, [](const Chain& c) { return c.left != kOutside && c.right != kOutside; });
+  std::vector<Rough> pieces = rough_pieces(chains, tolerance);
+  for (Rough& r : pieces) {
+    r.normal = fitted_normal(r);
+    r.length *= r.length;  // the longer a piece, the better it knows the direction
+  }
+  const double direction = main_direction(pieces, 0).value_or(0);
+  double sum = 0, weight = 0;
+  for (const Rough& r : pieces) {
+    const double off = std::remainder(std::atan2(r.normal.y(), r.normal.x()) - direction, kQuarter);
+    if (std::abs(off) < kSpread) sum += r.length * off, weight += r.length;
+  }
+  return weight > 0 ? direction + sum / weight : direction;
 }
 
 Borders find_borders(const Field& field, const Labels& labels, const std::vector<WallSample>& walls,
                      double direction, double tolerance) {
-  const std::vector<Chain> chains = chains_of(field, labels);
+  const std::vector<Chain> chains = chains_of(field, labels, tolerance);
   std::vector<Rough> rough = rough_pieces(chains, tolerance);
   follow(direction, kFollow, rough);
   if (const auto second = main_direction(rough, kSecondShare * total_length(rough)))
     follow(*second, kFollow, rough);
+  square_short(direction, kOblique * tolerance, rough);
   Borders borders;
   borders.lines = gather(tolerance, rough);
   fit_lines(rough, walls, tolerance, borders.lines);

@@ -17,6 +17,31 @@ using namespace parameters::relief;
 
 constexpr int kOpen = -2;  // no label yet
 
+/// Cells of `is_in` that a square of `side` cells within it covers.
+std::vector<char> opened(int columns, int rows, const std::vector<char>& is_in, int side) {
+  const int wide = columns + 1;
+  std::vector<int> sum(wide * (rows + 1), 0), cover(wide * (rows + 1), 0);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+      sum[(r + 1) * wide + c + 1] = is_in[r * columns + c] + sum[r * wide + c + 1] +
+                                    sum[(r + 1) * wide + c] - sum[r * wide + c];
+  for (int r = 0; r + side <= rows; ++r)
+    for (int c = 0; c + side <= columns; ++c) {
+      const int a = r * wide + c, b = a + side * wide;
+      if (sum[b + side] - sum[b] - sum[a + side] + sum[a] < side * side) continue;
+      ++cover[a], --cover[a + side], --cover[b], ++cover[b + side];
+    }
+  std::vector<char> is_covered(is_in.size());
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      int& own = cover[r * wide + c];
+      own += (c > 0 ? cover[r * wide + c - 1] : 0) + (r > 0 ? cover[(r - 1) * wide + c] : 0) -
+             (c > 0 && r > 0 ? cover[(r - 1) * wide + c - 1] : 0);
+      is_covered[r * columns + c] = own > 0;
+    }
+  return is_covered;
+}
+
 /// What a patch has around it.
 struct Shape {
   double border = 0, at_ground = 0, at_nothing = 0;  // metres
@@ -25,22 +50,28 @@ struct Shape {
 
 class Labeller {
  public:
-  Labeller(const Field& field, const Ground& ground, Patches patches, double noise, double span)
+  Labeller(const Field& field, const Ground& ground, Patches patches, const Scales& scales)
       : f_(field),
         ground_(ground),
         patches_(std::move(patches.patches)),
         label_(std::move(patches.patch_of_cell)),
-        noise_(noise),
-        span_(span) {
-    for (int i = 0; i < f_.size(); ++i)
-      if (label_[i] < 0) label_[i] = ground_.is_ground[i] ? kOutside : kOpen;
-    open_outside();
+        noise_(scales.noise),
+        span_(scales.span),
+        tolerance_(scales.tolerance) {}
+
+  Labels squared() {
+    square();
+    return {std::move(label_), std::move(patches_)};
   }
 
   Labels run() {
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] < 0) label_[i] = ground_.is_ground[i] ? kOutside : kOpen;
+    open_outside();
     drop_clutter();
-    spread();
+    spread(true);
     for (int round = 0; round < kSmoothings; ++round) smooth();
+    square();
     drop_islands();
     return {std::move(label_), std::move(patches_)};
   }
@@ -127,8 +158,14 @@ class Labeller {
       if (l >= 0) l = becomes[l];
   }
 
+  /// Within so many cells of the grid's edge, beyond which all is outside.
+  bool is_at_edge(int i, int cells) const {
+    const int c = i % f_.columns, r = i / f_.columns;
+    return std::min(std::min(c, f_.columns - 1 - c), std::min(r, f_.rows - 1 - r)) < cells;
+  }
+
   /// Open cells are taken from their labelled neighbours, where that fits their height best first.
-  void spread() {
+  void spread(bool is_outside_spread) {
     using Step = std::tuple<double, int, int>;  // cost, cell, label
     std::priority_queue<Step, std::vector<Step>, std::greater<>> steps;
     const auto reach = [&](double cost, int i, int label) {
@@ -140,7 +177,7 @@ class Labeller {
         if (j >= 0 && label_[j] == kOpen) reach(cost, j, label_[i]);
     };
     for (int i = 0; i < f_.size(); ++i)
-      if (label_[i] != kOpen) go_on(0, i);
+      if (label_[i] >= 0 || (label_[i] == kOutside && is_outside_spread)) go_on(0, i);
     while (!steps.empty()) {
       const auto [cost, i, label] = steps.top();
       steps.pop();
@@ -173,6 +210,30 @@ class Labeller {
         for (const int l : around) weigh(l);
       }
     label_.swap(next);
+  }
+
+  /// What no square as wide as what borders may leave their lines fits into goes to its neighbours:
+  /// spikes, slots, and roofs and wings too thin to be any.
+  void square() {
+    const int side = std::max(1, static_cast<int>(std::lround(2 * tolerance_ / f_.cell)));
+    std::vector<char> is_in(f_.size());
+    const auto mark = [&](const auto& is) {
+      for (int i = 0; i < f_.size(); ++i) is_in[i] = is(label_[i]);
+      return opened(f_.columns, f_.rows, is_in, side);
+    };
+    const std::vector<char> is_outside = mark([](int l) { return l == kOutside; });
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] == kOutside && !is_outside[i] && !is_at_edge(i, side)) label_[i] = kOpen;
+    spread(false);
+    const std::vector<char> is_inside = mark([](int l) { return l >= 0; });
+    for (int i = 0; i < f_.size(); ++i)
+      if (label_[i] >= 0 && !is_inside[i]) label_[i] = kOutside;
+    for (int p = 0; p < static_cast<int>(patches_.size()); ++p) {
+      const std::vector<char> is_own = mark([p](int l) { return l == p; });
+      for (int i = 0; i < f_.size(); ++i)
+        if (label_[i] == p && !is_own[i]) label_[i] = kOpen;
+    }
+    spread(false);
   }
 
   struct Island {
@@ -223,14 +284,20 @@ class Labeller {
   const Ground& ground_;
   std::vector<Patch> patches_;
   std::vector<int> label_;
-  double noise_, span_;
+  double noise_, span_, tolerance_;
 };
 
 }  // namespace
 
-Labels label_field(const Field& field, const Ground& ground, Patches patches, double noise,
-                   double span) {
-  return Labeller(field, ground, std::move(patches), noise, span).run();
+Labels label_field(const Field& field, const Ground& ground, Patches patches,
+                   const Scales& scales) {
+  return Labeller(field, ground, std::move(patches), scales).run();
+}
+
+Labels square_labels(const Field& field, const Ground& ground, Labels labels,
+                     const Scales& scales) {
+  return Labeller(field, ground, {std::move(labels.patches), std::move(labels.of_cell)}, scales)
+      .squared();
 }
 
 }  // namespace colod::relief

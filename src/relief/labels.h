@@ -16,9 +16,18 @@ struct Labels {
   std::vector<Patch> patches;
 };
 
+/// What tells a roof from a bump.
+struct Scales {
+  double noise = 0;      ///< metres, as for find_patches
+  double span = 0;       ///< metres, likewise
+  double tolerance = 0;  ///< metres that a border may leave its line
+};
+
 /// Every cell of the building gets a patch: walls, holes and what is too small or too rough for one
-/// of its own go to the neighbour whose height is nearest. `noise`, `span` as for find_patches.
-Labels label_field(const Field& field, const Ground& ground, Patches patches, double noise,
-                   double span);
+/// of its own go to the neighbour whose height is nearest.
+Labels label_field(const Field& field, const Ground& ground, Patches patches, const Scales& scales);
+
+/// The same labels; what no square of twice the tolerance fits into goes to its neighbours.
+Labels square_labels(const Field& field, const Ground& ground, Labels labels, const Scales& scales);
 
 }  // namespace colod::relief

@@ -134,8 +134,9 @@ double measure_bulge(const Mesh& mesh, const std::vector<Side>& sides, double ed
 }  // namespace
 
 bool Melting::is_leaning() const { return lean > kLeastLean; }
+bool Melting::is_wide() const { return edge > kWide && bulge > kWideBulge; }
 bool Melting::is_coarse() const {
-  return bulge > kCoarseBulge && std::max(edge, kToldBulges * bulge) > kCoarse;
+  return is_wide() || (bulge > kCoarseBulge && std::max(edge, kToldBulges * bulge) > kCoarse);
 }
 bool Melting::is_melted() const {
   return bulge > kExactBulge && drawn < kLeastDrawn && (is_leaning() || is_coarse());

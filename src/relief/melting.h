@@ -13,6 +13,8 @@ struct Melting {
 
   /// Walls lean outward: drawn from heights, or from pictures that were taken from above.
   bool is_leaning() const;
+  /// Even a wall is a few triangles.
+  bool is_wide() const;
   /// Windows and dormers are no larger than what the mesh cannot tell.
   bool is_coarse() const;
   bool is_melted() const;

@@ -22,9 +22,11 @@ constexpr double kExactBulge = 0.003;                 // metres: less is exact, 
 constexpr double kSteepest = 0.4, kLeastLean = 0.04;  // |z| of walls' normals, and its mean
 constexpr double kCoarseBulge = 0.08;                 // metres, and …
 constexpr double kCoarse = 0.6, kToldBulges = 4;      // … metres of edge, or of so many bulges
+constexpr double kWide = 1.2, kWideBulge = 0.05;      // metres of edge that tell no window at all
 constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
-constexpr double kLeastSupport = 0.1;  // of the walls that are drawn: seen, in part
-constexpr double kExplained = 0.7;     // of the surface: near roofs and walls
+constexpr double kLeastSupport = 0.1;   // of the walls that are drawn: seen, in part
+constexpr double kExplained = 0.7;      // of the surface: near roofs and walls …
+constexpr double kWideExplained = 0.5;  // … where nothing else can be told
 
 // Scales.
 constexpr double kLeastSpan = 1;                         // metres that bumps are wide, at least
@@ -70,6 +72,7 @@ constexpr double kSpread = 0.07;       // radians (4°) that pieces of one direc
 constexpr double kFollow = 0.26;       // radians (15°): a piece takes the building's direction …
 constexpr double kShortPiece = 3;      // metres: … twice that if shorter
 constexpr double kSecondShare = 0.15;  // of all length: another direction
+constexpr double kOblique = 5;         // tolerances: what is shorter and oblique is a corner
 constexpr double kParallel = 0.05;     // sine between pieces that may share a line
 constexpr double kLeastSine = 0.25;    // between lines that make a corner
 constexpr double kReach = 3;           // tolerances that a corner may move
@@ -78,18 +81,26 @@ constexpr double kMelted = 1.6;        // … metres: a melted corner is no long
 constexpr double kLeastCrease = 0.12;  // metres a metre between the slopes of two roofs that meet
 constexpr double kCreaseReach = 2;     // tolerances between such a border and where planes meet
 
+// Blocks on roofs.
+constexpr double kBlockNoise = 2;        // times the noise: what stands off a roof
+constexpr std::size_t kMostBlocks = 24;  // of one building
+constexpr double kSloping = 0.8;         // of a level top's residual: a top slopes as its roof does
+constexpr double kSeenTop = 0.4;         // of its cells that are no walls
+constexpr double kFlatTop = 0.45;        // of a block's rise: residual of its top
+
 // Roofs and walls.
-constexpr double kTrim = 2.5;         // times the noise: cells farther off say nothing of a roof
-constexpr double kLevelSlope = 0.06;  // metres a metre (3.4°): level
-constexpr double kSquare = 0.35;      // radians (20°) between a slope and the building's direction
-constexpr double kSameTilt = 0.09;    // metres a metre between slopes that get one tilt
-constexpr double kExcused = 0.5;      // of the noise, that this may add to a roof's residual
-constexpr double kLeastStep = 0.3;    // metres, or …
-constexpr double kStepNoise = 1.5;    // … times the noise: a step between roofs is a wall
-constexpr double kWallReach = 1.2;    // metres between a steep face and its wall
-constexpr double kBeside = 1.5;       // metres into the building that its neighbours hang over
-constexpr double kRoofReach = 1;      // metres between a face and its roof
-constexpr double kFacing = 0.7;       // cosine between a steep face and the wall that it is of
-constexpr double kLeastWall = 2;      // m² of such faces: a wall is seen
+constexpr double kTrim = 2.5;        // times the noise: cells farther off say nothing of a roof
+constexpr double kLevelSlope = 0.1;  // metres a metre (5.7°): level
+constexpr double kSameTilt = 0.09;   // metres a metre between slopes that get one tilt
+constexpr double kExcused = 1;       // of the noise, that this may add to a roof's residual
+constexpr double kSameRoof = 2;      // times the noise, or …
+constexpr double kSameRise = 0.2;    // … metres from a larger roof's plane: a roof is of it
+constexpr double kLeastStep = 0.3;   // metres, or …
+constexpr double kStepNoise = 1.5;   // … times the noise: a step between roofs is a wall
+constexpr double kWallReach = 1.2;   // metres between a steep face and its wall
+constexpr double kBeside = 1.5;      // metres into the building that its neighbours hang over
+constexpr double kRoofReach = 1;     // metres between a face and its roof
+constexpr double kFacing = 0.7;      // cosine between a steep face and the wall that it is of
+constexpr double kLeastWall = 2;     // m² of such faces: a wall is seen
 
 }  // namespace colod::parameters::relief

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "blocks.h"
 #include "borders.h"
 #include "core/rays.h"
 #include "field.h"
@@ -32,6 +33,7 @@ struct Plan {
   Labels labels;
   Borders borders;
   double noise = 0, tolerance = 0;
+  double direction = 0;  ///< radians: of most border
 
   Vec3 raised(const Vec2& p, int label) const {
     const double z =
@@ -70,24 +72,28 @@ double patch_noise(const std::vector<Patch>& patches) {
   return 0;
 }
 
-Plan draw_plan(const Mesh& mesh, double edge) {
+Plan draw_plan(const Mesh& mesh, const Melting& melting) {
+  const double edge = melting.edge;
   const RayScene rays(mesh);
   Plan plan;
   plan.field = make_field(mesh, rays, edge);
   plan.ground = find_ground(plan.field, mesh);
   const double span = std::max(kLeastSpan, edge);
-  plan.noise = std::clamp(roof_noise(plan.field), kLeastNoise, kMostNoise);
+  plan.noise = std::clamp(std::max(roof_noise(plan.field), melting.bulge), kLeastNoise, kMostNoise);
   const std::vector<char> is_roof = roof_cells(plan.field, plan.ground);
   Patches patches = find_patches(plan.field, is_roof, plan.noise, span);
   plan.noise = std::clamp(patch_noise(patches.patches), plan.noise, kMostNoise);
   patches = find_patches(plan.field, is_roof, plan.noise, span);
-  plan.labels = label_field(plan.field, plan.ground, std::move(patches), plan.noise, span);
   plan.tolerance = std::clamp(std::max(kToleranceEdge * edge, kToleranceNoise * plan.noise),
                               kLeastTolerance, kMostTolerance);
-  const double direction = find_direction(plan.field, plan.labels, plan.tolerance);
-  plan.labels.patches = regular_roofs(plan.field, plan.labels, direction, plan.noise);
+  const Scales scales{.noise = plan.noise, .span = span, .tolerance = plan.tolerance};
+  plan.labels = label_field(plan.field, plan.ground, std::move(patches), scales);
+  plan.direction = find_direction(plan.field, plan.labels, plan.tolerance);
+  regular_roofs(plan.field, plan.direction, plan.noise, plan.labels);
+  raise_blocks(plan.field, scales, plan.labels);
+  plan.labels = square_labels(plan.field, plan.ground, std::move(plan.labels), scales);
   plan.borders =
-      find_borders(plan.field, plan.labels, wall_samples(mesh), direction, plan.tolerance);
+      find_borders(plan.field, plan.labels, wall_samples(mesh), plan.direction, plan.tolerance);
   return plan;
 }
 
@@ -109,8 +115,9 @@ std::optional<Piece> step_at(const Plan& plan, Piece piece) {
   };
   double first = step(piece.from), last = step(piece.to);
   const double least = std::max(kLeastStep, kStepNoise * plan.noise);
-  if (std::abs(first + last) / 2 < least && std::max(std::abs(first), std::abs(last)) < 2 * least)
-    return std::nullopt;
+  const double mean = std::abs(first + last) / 2;
+  const bool is_tapered = first * last < 0 || std::min(std::abs(first), std::abs(last)) < least / 2;
+  if (mean < (is_tapered ? 2 * least : least)) return std::nullopt;
   if (first + last < 0) {
     std::swap(piece.from, piece.to), std::swap(piece.left, piece.right);
     std::swap(first, last), first = -first, last = -last;
@@ -241,12 +248,24 @@ double supported_share(const Mesh& mesh, const Relief& relief) {
   return drawn > 0 ? seen / drawn : 0;
 }
 
-}  // namespace
+/// The mesh about the z axis.
+Mesh turned(Mesh mesh, double angle) {
+  const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
+  for (Vec3& v : mesh.vertices) v = turn * v;
+  return mesh;
+}
 
-std::optional<Relief> find_relief(const Mesh& mesh) {
-  const Melting melting = measure_melting(mesh);
-  if (!melting.is_melted()) return std::nullopt;
-  const Plan plan = draw_plan(mesh, melting.edge);
+void turn(Relief& relief, double angle) {
+  const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
+  for (Relief::Part& part : relief.parts) {
+    part.normal = turn * part.normal;
+    for (std::vector<Vec3>& ring : part.rings)
+      for (Vec3& v : ring) v = turn * v;
+  }
+}
+
+std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
+  const Plan plan = draw_plan(mesh, melting);
   Relief relief;
   relief.foot = plan.ground.foot;
   relief.noise = plan.noise;
@@ -257,8 +276,20 @@ std::optional<Relief> find_relief(const Mesh& mesh) {
   for (Relief::Part& wall : walls_of(plan, pieces)) relief.parts.push_back(std::move(wall));
   share_out(mesh, plan, pieces, relief);
   if (supported_share(mesh, relief) < kLeastSupport ||
-      explained_share(mesh, relief, melting.reach()) < kExplained)
+      explained_share(mesh, relief, melting.reach()) <
+          (melting.is_wide() ? kWideExplained : kExplained))
     return std::nullopt;
+  return relief;
+}
+
+}  // namespace
+
+std::optional<Relief> find_relief(const Mesh& mesh) {
+  const Melting melting = measure_melting(mesh);
+  if (!melting.is_melted()) return std::nullopt;
+  const double yaw = draw_plan(mesh, melting).direction;
+  std::optional<Relief> relief = read_relief(turned(mesh, -yaw), melting);
+  if (relief) turn(*relief, yaw);
   return relief;
 }
 

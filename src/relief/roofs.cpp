@@ -63,7 +63,6 @@ Vec2 squared(const Vec2& slope, double direction) {
   if (tilt < kLevelSlope) return Vec2::Zero();
   const double angle = std::atan2(slope.y(), slope.x());
   const double off = std::remainder(angle - direction, std::numbers::pi / 2);
-  if (std::abs(off) > kSquare) return slope;
   return tilt * std::cos(off) * Vec2(std::cos(angle - off), std::sin(angle - off));
 }
 
@@ -89,10 +88,24 @@ std::vector<double> shared_tilts(const std::vector<Patch>& patches) {
   return tilt;
 }
 
+/// Per roof a larger one in whose plane it lies, too, or itself.
+std::vector<int> shared_planes(const std::vector<std::vector<Sample>>& samples,
+                               const std::vector<Patch>& roofs, double reach) {
+  std::vector<int> order(roofs.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return samples[a].size() > samples[b].size(); });
+  std::vector<int> lead(roofs.size());
+  std::iota(lead.begin(), lead.end(), 0);
+  for (auto p = order.begin(); p != order.end(); ++p)
+    for (auto l = order.begin(); l != p && lead[*p] == *p; ++l)
+      if (lead[*l] == *l && residual_of(samples[*p], roofs[*l]) < reach) lead[*p] = *l;
+  return lead;
+}
+
 }  // namespace
 
-std::vector<Patch> regular_roofs(const Field& field, const Labels& labels, double direction,
-                                 double noise) {
+void regular_roofs(const Field& field, double direction, double noise, Labels& labels) {
   std::vector<std::vector<Sample>> samples(labels.patches.size());
   for (int i = 0; i < field.size(); ++i) {
     const int p = labels.of_cell[i];
@@ -101,7 +114,7 @@ std::vector<Patch> regular_roofs(const Field& field, const Labels& labels, doubl
     if (std::abs(field.height[i] - labels.patches[p].height(place)) < kTrim * noise)
       samples[p].push_back({place, field.height[i]});
   }
-  std::vector<Patch> roofs = labels.patches;
+  std::vector<Patch>& roofs = labels.patches;
   const double excused = kExcused * noise;
   for (std::size_t p = 0; p < roofs.size(); ++p) {
     if (samples[p].size() < 4) continue;
@@ -112,7 +125,10 @@ std::vector<Patch> regular_roofs(const Field& field, const Labels& labels, doubl
   for (std::size_t p = 0; p < roofs.size(); ++p)
     if (const double own = roofs[p].slope.norm(); own > 0 && samples[p].size() >= 4)
       roofs[p] = with_slope(samples[p], roofs[p], roofs[p].slope * (tilt[p] / own), excused);
-  return roofs;
+  const std::vector<int> lead =
+      shared_planes(samples, roofs, std::max(kSameRise, kSameRoof * noise));
+  for (int& l : labels.of_cell)
+    if (l >= 0) l = lead[l];
 }
 
 }  // namespace colod::relief

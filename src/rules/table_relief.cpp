@@ -17,6 +17,9 @@ std::vector<Parameter> melted_numbers() {
        "leans both ways, drones' 0.04 and more"},
       {"coarse_bulge", "m", relief::kCoarseBulge,
        "of meshes whose walls do not lean: scans from the street have 0.024, sparse ones 0.07"},
+      {"wide", "m", relief::kWide,
+       "median edge: nothing but roofs and walls can be told, however flat they are"},
+      {"wide_bulge", "m", relief::kWideBulge, "of such meshes"},
       {"coarse", "m", relief::kCoarse, "median edge, or four bulges: windows cannot be told"},
       {"least_drawn", "", kLeastDrawn,
        "share of the surface that is upright or level to the last digit: what people draw"},
@@ -25,6 +28,8 @@ std::vector<Parameter> melted_numbers() {
       {"explained", "", relief::kExplained,
        "share of the surface that must lie near the roofs and walls: canopies and bridges are no "
        "relief"},
+      {"wide_explained", "", relief::kWideExplained,
+       "likewise, of wide edges: scraps under a roof make up the rest"},
       {"least_reach", "m", relief::kLeastReach, "near, at least"},
       {"least_span", "m", relief::kLeastSpan, "width of bumps, at least; else the median edge"},
       {"patch_price", "", relief::kPatchPrice,
@@ -41,8 +46,20 @@ std::vector<Parameter> melted_numbers() {
       {"thin", "m", relief::kThin, "half the width of what is no roof of its own"},
       {"slide", "", relief::kSlide, "slope of a strip that is the side of a melted wall"},
       {"melted", "m", relief::kMelted, "length of a melted corner"},
-      {"level_slope", "", relief::kLevelSlope, "of a roof that is level"},
-      {"square", "rad", relief::kSquare, "between a roof's slope and the building's direction"},
+      {"oblique", "", relief::kOblique,
+       "tolerances: a piece of border that is shorter and follows no direction is a corner or "
+       "step"},
+      {"level_slope", "", relief::kLevelSlope, "of a roof that may be level"},
+      {"excused", "", relief::kExcused,
+       "of the noise, that this may add to a roof's residual; with half of it eaves were level on "
+       "58 % of the length, not 95"},
+      {"same_roof", "", relief::kSameRoof,
+       "times the noise from the plane of a larger roof: it is of it"},
+      {"same_rise", "m", relief::kSameRise, "likewise"},
+      {"block_noise", "", relief::kBlockNoise,
+       "times the noise: what stands off a roof and may be a block"},
+      {"flat_top", "", relief::kFlatTop, "of a block's rise: residual of its top"},
+      {"seen_top", "", relief::kSeenTop, "of a block's cells, that are no walls"},
       {"least_step", "m", relief::kLeastStep, "between roofs that have a wall between them"}};
 }
 
@@ -56,9 +73,11 @@ RuleInfo melted_rule() {
           "heights and pictures from above give them, and those so coarse or bulging that windows "
           "cannot be told, if roofs and walls explain them.",
       .does =
-          "Draws the mesh as heights, parts the ground around, joins neighbouring pieces of roof "
-          "while a plane explains less than it costs, draws borders onto few lines of few "
-          "directions, and hands on these roofs and the upright walls between them as planes.",
+          "Draws the mesh as heights along most of its border, parts the ground around, joins "
+          "neighbouring pieces of roof while a plane explains less than it costs, raises blocks "
+          "where the heights stand off a roof, draws borders onto few lines of few directions, and "
+          "hands on these roofs and the upright walls between them as planes; a roof has all its "
+          "walls on each layer that it is on.",
       .paper = "The paper grows planes in space, of whatever surface.",
       .reason =
           "Each bump became a plane: of 47 buildings of a drone scene the finest layer had more "

@@ -240,6 +240,27 @@ TEST_CASE("a layer's planes: its segments' and the loose ones that touch them") 
   CHECK(layer_planes(t.planes, t.segments, {1, 2}, 0).empty());
 }
 
+TEST_CASE("a roof of a relief has its walls, of whatever segment, and no others") {
+  // A slab on layer 0, of which another segment on layer 2 has a wall, and a block upon it.
+  Planes planes;
+  Segments segments;
+  add_segment(box_mesh({0, 0, 0}, {8, 8, 4}), planes, segments, 1, 2);
+  add_segment(box_mesh({2, 2, 4}, {4, 4, 6}), planes, segments, 1, 2);
+  const auto wall = std::find_if(planes.planes.begin(), planes.planes.end(),
+                                 [](const Plane& p) { return p.normal.x() > 0.9; });
+  const int moved = static_cast<int>(wall - planes.planes.begin());
+  std::erase(segments.segments[0].planes, moved);
+  segments.segments[1].planes.push_back(moved);
+  segments.segment_of_plane[moved] = 1;
+  const auto planes_at = [&](int k) { return layer_planes(planes, segments, {0, 2}, k); };
+  CHECK(planes_at(0).size() == 5);
+  planes.plane_of_item = {kAround, 0};
+  const std::vector<int> coarse = planes_at(0);
+  CHECK(coarse.size() == 6);
+  CHECK(std::count(coarse.begin(), coarse.end(), moved) == 1);
+  CHECK(planes_at(2).size() == 12);
+}
+
 TEST_CASE("touching reaches as far as twice the planes' distance, and through crossings") {
   TwoBoxes t;
   t.planes.distance = 3;

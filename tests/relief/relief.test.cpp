@@ -188,6 +188,109 @@ TEST_CASE("a low roof is no ground where the mesh ends at its rim and walls hang
   }
 }
 
+/// A hall with a box of `rise` on its roof, `wide` across, or a pit where the rise is negative.
+Heights hall_with_block(double size, double rise, double wide) {
+  return [=](double x, double y) {
+    if (std::max(std::abs(x), std::abs(y)) > size / 2) return bump(x, y, 0.06);
+    const bool is_on = std::abs(x - size / 6) < wide / 2 && std::abs(y) < wide / 2;
+    return 7 + (is_on ? rise : 0) + bump(x, y, 0.06);
+  };
+}
+
+TEST_CASE("what stands off a roof, or is sunk into it, is an upright block") {
+  struct Case {
+    double size, edge, rise, wide;
+  };
+  for (const Case c : {Case{16, 0.3, 1.2, 2}, {16, 0.3, -1.5, 3}, {40, 0.5, 1.5, 2.5}}) {
+    INFO(c.size << " m, edges of " << c.edge << ", rise " << c.rise);
+    const auto relief =
+        find_relief(field(c.size + 4, c.edge, hall_with_block(c.size, c.rise, c.wide)));
+    REQUIRE(relief);
+    CHECK(count(*relief, false) == 2);
+    CHECK(count(*relief, true) == 8);
+    double top = 7;
+    for (const Relief::Part& p : relief->parts)
+      if (!p.is_wall && !p.rings.empty() && std::abs(p.offset - 7) > std::abs(top - 7))
+        top = p.offset;
+    CHECK(top == Approx(7 + c.rise).margin(0.25));
+  }
+}
+
+TEST_CASE("bumps as high as the noise of a roof are no blocks") {
+  const auto relief = find_relief(field(20, 0.3, hall_with_block(16, 0.15, 2)));
+  REQUIRE(relief);
+  CHECK(count(*relief, false) == 1);
+}
+
+TEST_CASE("a hall that lies askew to all axes has four walls at right angles") {
+  for (const double yaw : {0.2, 0.5, 0.8}) {
+    INFO(yaw);
+    const Vec2 u(std::cos(yaw), std::sin(yaw)), v(-u.y(), u.x());
+    const auto relief = find_relief(field(30, 0.4, [&](double x, double y) {
+      const bool is_in = std::abs(u.dot(Vec2(x, y))) < 9 && std::abs(v.dot(Vec2(x, y))) < 6;
+      return (is_in ? 7 : 0) + bump(x, y, 0.08);
+    }));
+    REQUIRE(relief);
+    CHECK(count(*relief, true) == 4);
+    for (const Relief::Part& p : relief->parts)
+      if (p.is_wall) {
+        const Vec2 n = p.normal.head<2>();
+        CHECK(std::max(std::abs(n.dot(u)), std::abs(n.dot(v))) > 0.999);
+        CHECK(p.offset == Approx(std::abs(n.dot(u)) > 0.5 ? 9 : 6).margin(0.4));
+      }
+  }
+}
+
+TEST_CASE("a long roof that sags is one plane a slope") {
+  for (const double length : {60.0, 100.0}) {
+    INFO(length);
+    const auto relief = find_relief(field(length + 4, 0.7, [&](double x, double y) {
+      const bool is_in = std::abs(x) < length / 2 && std::abs(y) < 12;
+      const double sag = 0.1 * std::cos(2 * M_PI * x / 50);
+      return (is_in ? 8 + 0.25 * (12 - std::abs(y)) + sag : 0) + bump(x, y, 0.12);
+    }));
+    REQUIRE(relief);
+    CHECK(count(*relief, false) == 2);
+  }
+}
+
+TEST_CASE("spikes and slots of the rim leave no trace in the walls") {
+  const auto ragged = [](double x, double y) {
+    const bool is_hall = std::abs(x) < 9 && std::abs(y) < 6;
+    const bool is_spike = x > 0 && x < 11.5 && std::abs(y - 2) < 0.3;
+    const bool is_slot = x > -10 && x < -6.5 && std::abs(y + 1) < 0.3;
+    return ((is_hall || is_spike) && !is_slot ? 6 : 0) + bump(x, y, 0.06);
+  };
+  const auto relief = find_relief(field(26, 0.3, ragged));
+  REQUIRE(relief);
+  CHECK(count(*relief, false) == 1);
+  CHECK(count(*relief, true) == 4);
+}
+
+TEST_CASE("a block on the roof is on the finest layer, upright, and never half") {
+  for (const double size : {16.0, 40.0}) {
+    INFO(size);
+    Options options;
+    options.ns = 60;
+    const Mesh mesh = field(size + 4, size / 50, hall_with_block(size, 2, size / 5));
+    const Scene scene = build_scene({{named(mesh)}, {}}, options);
+    REQUIRE(scene.buildings.size() == 1);
+    const Building& b = scene.buildings[0];
+    REQUIRE(b.failure.empty());
+    const double hall = 7 * size * size, block = 2 * size * size / 25;
+    for (const Layer& layer : b.layers) {
+      CHECK(layer.validity.is_watertight);
+      for (const PolygonMesh::Facet& f : layer.mesh.facets)
+        CHECK((std::abs(f.normal.z()) < 0.01 || std::abs(f.normal.z()) > 0.99));
+      const double volume = signed_volume(layer.mesh.mesh());
+      const bool has_block = layer.mesh.facets.size() > 6;
+      CHECK(volume == Approx(hall + (has_block ? block : 0)).epsilon(0.04));
+    }
+    CHECK(b.layers.back().mesh.facets.size() >= 11);  // six, and a block of five
+    CHECK(b.layers.back().mesh.facets.size() <= 16);
+  }
+}
+
 TEST_CASE("what is known more exactly than its relief is none") {
   CHECK(!find_relief(test::box_mesh({0, 0, 0}, {10, 8, 6})));
   CHECK(!find_relief(field(16, 0.4, [](double, double) { return 5.0; })));
