@@ -46,10 +46,12 @@ Message summary_of(const Scene& scene, double seconds, const std::string& out) {
       scene.buildings.begin(), scene.buildings.end(),
       [](const Building& b) { return b.failure.empty() && (b.has_lost() || b.has_failed()); });
   std::ostringstream text;
-  text << done << " of " << scene.buildings.size() + scene.failures.size() << " buildings in "
-       << std::fixed << std::setprecision(1) << seconds << " s, written to " << out
+  text << done << " of " << scene.buildings.size() << " buildings in " << std::fixed
+       << std::setprecision(1) << seconds << " s, written to " << out
        << " (layer 0 is the coarsest)";
   if (lossy > 0) text << "; of " << lossy << " of them something is lost, as said above";
+  if (!scene.failures.empty())
+    text << "; inputs have " << scene.failures.size() << " failures of their own, as said above";
   return {Level::kInfo, text.str()};
 }
 
