@@ -43,7 +43,7 @@ FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& ro
     Face flat;
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec2f uv = image >= 0 ? mesh.uvs[f][c] : Vec2f(0, 0);
-      const Rgb rgb = image >= 0 ? Rgb{} : mesh.face_color[f];
+      const Rgb rgb = image >= 0 ? Rgb{} : mesh.colors[f][c];
       const Key key(face[c], uv.x(), uv.y(), rgb, side.x(), side.y(), side.z());
       const auto [known, is_new] = numbers.try_emplace(key, static_cast<int>(out.positions.size()));
       if (is_new) {

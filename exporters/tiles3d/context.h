@@ -19,9 +19,9 @@ struct ContextImage {
 /// A surface in world coordinates, z up.
 struct ContextMesh {
   Mesh mesh;
-  std::vector<std::array<Vec2f, 3>> uvs;  ///< per face; where its image is −1 without meaning
-  std::vector<int> face_image;            ///< per face; −1: its colour
-  std::vector<Rgb> face_color;            ///< per face
+  std::vector<std::array<Vec2f, 3>> uvs;   ///< per face; where its image is −1 without meaning
+  std::vector<int> face_image;             ///< per face; −1: its colours
+  std::vector<std::array<Rgb, 3>> colors;  ///< per face, of its corners
   std::vector<ContextImage> images;
 };
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "scene/closing.h"
 #include "scene/context_chain.h"
+#include "scene/skirts.h"
 
 namespace colod {
 
@@ -22,6 +23,7 @@ constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decode
 
 using Parted = std::shared_ptr<const PartedScene>;
 using Pieces = std::vector<Territories::Piece>;
+using Ground = std::shared_ptr<const ClosingGround>;
 
 std::string cause_of(const Error& e) { return std::string(e.what()).substr(e.item.size() + 2); }
 
@@ -56,15 +58,31 @@ bool has_own_chain(const SceneTiles& tiles) {
   return static_cast<double>(served) >= kServing * static_cast<double>(tiles.finest().size());
 }
 
+/// What of a tile is no building's, closed where it was cut.
+Source beside_buildings(const PartedScene& scene, const ClosingGround& ground, const Source& tile) {
+  Source out = scene.territories.cut_out(tile, -1);
+  add_skirts(scene.territories, ground, out);
+  return out;
+}
+
+/// The ground below buildings.
+Source below_buildings(const PartedScene& scene, const ClosingGround& ground,
+                       const Pieces& pieces) {
+  Source out = ground.below(pieces);
+  add_skirts(scene.territories, ground, out);
+  return out;
+}
+
 /// What a node shows beside the buildings; what of it cannot be read is among its warnings.
-Source read_node(const PartedScene& scene, std::size_t i, const ReadOptions& options) {
+Source read_node(const PartedScene& scene, const ClosingGround& ground, std::size_t i,
+                 const ReadOptions& options) {
   const TileNode& node = scene.tiles.tree().nodes[i];
   std::vector<std::string> problems;
   std::vector<Source> parts;
   for (const std::string& content : node.contents) {
     try {
-      parts.push_back(
-          scene.territories.cut_out(read_tile(node, content, scene.tiles.to_scene(), options), -1));
+      parts.push_back(beside_buildings(scene, ground,
+                                       read_tile(node, content, scene.tiles.to_scene(), options)));
     } catch (const Error& e) {
       problems.push_back(content + ": " + cause_of(e));
     } catch (const std::exception& e) {  // a library gave up: this tile's problem only
@@ -82,7 +100,7 @@ class Nodes {
   explicit Nodes(const SceneOutput& output) : output_(output) {}
 
   /// The scene's own tiles on all their levels.
-  void add_tree(const Parted& scene, const ReadOptions& options) {
+  void add_tree(const Parted& scene, const Ground& ground, const ReadOptions& options) {
     const std::vector<TileNode>& tree = scene->tiles.tree().nodes;
     const std::vector<char> is_left_out = too_fine(scene->tiles);
     std::vector<int> number;
@@ -92,7 +110,8 @@ class Nodes {
       const int above = tree[i].parent;
       nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
                         tree[i].geometric_error, tree[i].is_added});
-      read_.push_back([scene, options, i] { return read_node(*scene, i, options); });
+      read_.push_back(
+          [scene, ground, options, i] { return read_node(*scene, *ground, i, options); });
     }
   }
 
@@ -141,7 +160,7 @@ Vec2 middle_of(const Territories::Piece& piece) {
 }
 
 /// The ground below buildings, square by square.
-void add_closing(const Parted& scene, Nodes& nodes) {
+void add_closing(const Parted& scene, const Ground& ground, Nodes& nodes) {
   std::map<std::array<int, 2>, Pieces> squares;
   for (const Territories::Piece& piece : scene->territories.pieces()) {
     const Vec2 at = middle_of(piece) / kCell;
@@ -150,8 +169,9 @@ void add_closing(const Parted& scene, Nodes& nodes) {
   }
   auto all = std::make_shared<std::vector<Pieces>>();
   for (auto& [at, pieces] : squares) all->push_back(std::move(pieces));
-  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
-  const auto close = [scene, ground, all](std::size_t i) { return ground->below((*all)[i]); };
+  const auto close = [scene, ground, all](std::size_t i) {
+    return below_buildings(*scene, *ground, (*all)[i]);
+  };
   std::vector<ChainLeaf> leaves;
   for (std::size_t i = 0; i < all->size(); ++i)
     leaves.push_back({box_of((*all)[i]), [close, i] { return ChainPart{close(i), {}, {}}; }, 0});
@@ -172,13 +192,13 @@ std::size_t tile_below(const SceneTiles& tiles, const Vec2& p) {
 }
 
 /// The finest tiles, each with the ground that closes it, and coarser ones of the program's own.
-void add_own_chain(const Parted& scene, Nodes& nodes) {
+void add_own_chain(const Parted& scene, const Ground& ground, Nodes& nodes) {
   const auto pieces = std::make_shared<std::vector<Pieces>>(scene->tiles.count());
   for (const Territories::Piece& piece : scene->territories.pieces())
     (*pieces)[tile_below(scene->tiles, middle_of(piece))].push_back(piece);
-  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
   const auto show = [scene, ground, pieces](std::size_t i, const Source& tile) {
-    return joined({scene->territories.cut_out(tile, -1), ground->below((*pieces)[i])});
+    return joined(
+        {beside_buildings(*scene, *ground, tile), below_buildings(*scene, *ground, (*pieces)[i])});
   };
   std::vector<ChainLeaf> leaves;
   for (std::size_t i = 0; i < pieces->size(); ++i) {
@@ -220,8 +240,7 @@ ChainPart bare_part(const PartedScene& scene, const ClosingGround& ground, const
 }
 
 /// No plants, no clutter: the terrain, closed below all that stands on it.
-void add_bare_ground(const Parted& scene, Nodes& nodes) {
-  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
+void add_bare_ground(const Parted& scene, const Ground& ground, Nodes& nodes) {
   const HeightMap& map = scene->map;
   const int cells = std::max(2, static_cast<int>(kCell / map.cell));
   std::vector<ChainLeaf> leaves;
@@ -242,13 +261,14 @@ void add_bare_ground(const Parted& scene, Nodes& nodes) {
 std::shared_ptr<const Context> context_of(const Parted& scene, ContextMode mode,
                                           const ReadOptions& options, const SceneOutput& output) {
   Nodes nodes(output);
+  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
   if (mode == ContextMode::kGround) {
-    add_bare_ground(scene, nodes);
+    add_bare_ground(scene, ground, nodes);
   } else if (has_own_chain(scene->tiles)) {
-    nodes.add_tree(scene, options);
-    add_closing(scene, nodes);
+    nodes.add_tree(scene, ground, options);
+    add_closing(scene, ground, nodes);
   } else {
-    add_own_chain(scene, nodes);
+    add_own_chain(scene, ground, nodes);
   }
   return nodes.take();
 }

@@ -40,11 +40,13 @@ std::vector<Message> problems_of(const Scene& scene) {
 
 Message summary_of(const Scene& scene, const Tally& tally, double seconds, const std::string& out) {
   std::ostringstream text;
-  text << tally.done << " of " << tally.buildings + scene.failures.size() << " buildings in "
-       << std::fixed << std::setprecision(1) << seconds << " s, written to " << out
+  text << tally.done << " of " << tally.buildings << " buildings in " << std::fixed
+       << std::setprecision(1) << seconds << " s, written to " << out
        << " (layer 0 is the coarsest)";
   if (tally.lossy > 0)
     text << "; of " << tally.lossy << " of them something is lost, as said above";
+  if (!scene.failures.empty())
+    text << "; inputs have " << scene.failures.size() << " failures of their own, as said above";
   return {Level::kInfo, text.str()};
 }
 

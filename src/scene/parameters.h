@@ -129,8 +129,13 @@ constexpr std::size_t kMostMeasured = 100'000;  // vertices that a tile's distan
 
 namespace colod::parameters::closing {
 
-constexpr double kLongest = 1.5;  // metres: it follows banks as fine as this
-constexpr double kBare = 0.7;     // metres over the terrain: what is seen there is ground
+constexpr double kSide = 2;          // metres: of squares, that follow banks
+constexpr double kBare = 0.7;        // metres over the terrain: what is seen there is ground
+constexpr double kGrid = 1e-6;       // metres: places that differ by less become one
+constexpr int kTintCells = 4;        // along a side, of which the ground's colour is the mean
+constexpr double kSkirt = 0.3;       // metres below: more than squares are off within their sides
+constexpr double kAside = 0.005;     // metres beside an edge: on which side of a border it lies
+constexpr double kLeastEdge = 1e-3;  // metres, seen from above
 
 }  // namespace colod::parameters::closing
 

@@ -321,6 +321,16 @@ const Box& Territories::box(std::size_t building) const { return impl_->boxes[bu
 double Territories::area(std::size_t building) const { return impl_->areas[building]; }
 const std::vector<Territories::Piece>& Territories::pieces() const { return impl_->pieces; }
 
+bool Territories::covers(const Vec2& p) const {
+  for (const int i : impl_->bins.find(p, p)) {
+    const auto& c = impl_->pieces[static_cast<std::size_t>(i)].corners;
+    if (cross(c[1] - c[0], p - c[0]) >= 0 && cross(c[2] - c[1], p - c[1]) >= 0 &&
+        cross(c[0] - c[2], p - c[2]) >= 0)
+      return true;
+  }
+  return false;
+}
+
 Source Territories::cut_out(const Source& source, int building) const {
   Cutter cutter(source);
   const Mesh& mesh = source.mesh;

@@ -29,6 +29,9 @@ class Territories {
   /// left out. Thread-safe.
   Source cut_out(const Source& source, int building) const;
 
+  /// Whether a place is some building's.
+  bool covers(const Vec2& p) const;
+
   /// The convex pieces, as triangles seen from above, and whose each is.
   struct Piece {
     std::array<Vec2, 3> corners;  ///< counter-clockwise

@@ -258,6 +258,7 @@ TEST_CASE("an image that is lost beside the buildings is told of and makes the e
   INFO(run.log);
   CHECK(run.code == 1);
   CHECK_THAT(run.log, Contains("wall.jpg") && Contains("its look is lost beside the buildings"));
+  CHECK_THAT(run.log, Contains("2 of 2 buildings") && Contains("inputs have 1 failures"));
   CHECK(report(folder)["failures"].size() == 1);
 }
 
