@@ -35,6 +35,13 @@ void lay_ground(House& house, bool has_sloping_ground) {
   house.ground.height = -highest;
 }
 
+/// Steep roofs over wide wings are no higher than roofs are.
+double draw_slope(Random& r, double span) {
+  return std::min(r.uniform(0.3, 1.7), 2 * kMostRise / span);
+}
+
+}  // namespace
+
 Fitting draw_fitting(Random& r, const Pool& pool, int floors, double floor_height) {
   Fitting f;
   f.makes = pool.draw(r);
@@ -51,11 +58,6 @@ Fitting draw_fitting(Random& r, const Pool& pool, int floors, double floor_heigh
   f.balcony_share = r.chance(0.6) ? r.uniform(0.2, 1) : 0;
   f.cornice_share = r.chance(0.4) ? r.uniform(0.3, 1) : 0;
   return f;
-}
-
-/// Steep roofs over wide wings are no higher than roofs are.
-double draw_slope(Random& r, double span) {
-  return std::min(r.uniform(0.3, 1.7), 2 * kMostRise / span);
 }
 
 ShapedRoof draw_roof(Random& r, const DrawnPlan& drawn) {
@@ -84,6 +86,35 @@ ShapedRoof draw_roof(Random& r, const DrawnPlan& drawn) {
   }
   return roof;
 }
+
+std::vector<Vec2> draw_profile(Random& r, double depth, double eaves) {
+  const int kind = r.pick(4);
+  std::vector<Vec2> profile = {{0, eaves}};
+  if (kind == 0) {  // one pitch to the back
+    profile.emplace_back(depth, eaves + depth * r.uniform(0.02, 0.15));
+  } else if (kind == 1) {
+    const int teeth = std::max(2, static_cast<int>(depth / r.uniform(4.5, 9)));
+    const double rise = r.uniform(1, 2.6), run = r.uniform(0.25, 0.9);
+    for (int i = 0; i < teeth; ++i) {
+      profile.emplace_back(i * depth / teeth + run, eaves + rise);
+      profile.emplace_back((i + 1) * depth / teeth, eaves);
+    }
+  } else if (kind == 2) {
+    const double rise = depth * r.uniform(0.12, 0.4);
+    constexpr int kSteps = 12;
+    for (int i = 1; i < kSteps; ++i)
+      profile.emplace_back(depth * (1 - std::cos(M_PI * i / kSteps)) / 2,
+                           eaves + rise * std::sin(M_PI * i / kSteps));
+    profile.emplace_back(depth, eaves);
+  } else {
+    const double ridge = depth * (r.chance(0.7) ? 0.5 : r.uniform(0.3, 0.7));
+    profile.emplace_back(ridge, eaves + 0.5 * depth * r.uniform(0.06, 0.7));
+    profile.emplace_back(depth, eaves);
+  }
+  return profile;
+}
+
+namespace {
 
 /// A tower or an annex before some edges between two corners that stand out.
 std::vector<Block> draw_blocks(Random& r, const std::vector<Vec2>& ring, double eaves,
@@ -215,34 +246,6 @@ House make_office(const Pool& pool, std::uint64_t seed, bool has_sloping_ground)
   fitting.is_ribbon = r.chance(0.75), fitting.is_arched = false, fitting.balcony_share = 0;
   fitting.spacing = r.uniform(2, 4.5), fitting.side_share = 1;
   return finish_house(House(kind.style, seed), drawn, kind, roof, fitting, has_sloping_ground);
-}
-
-/// Front to back: pitched, with teeth of glass, or a barrel.
-std::vector<Vec2> draw_profile(Random& r, double depth, double eaves) {
-  const int kind = r.pick(4);
-  std::vector<Vec2> profile = {{0, eaves}};
-  if (kind == 0) {  // one pitch to the back
-    profile.emplace_back(depth, eaves + depth * r.uniform(0.02, 0.15));
-  } else if (kind == 1) {
-    const int teeth = std::max(2, static_cast<int>(depth / r.uniform(4.5, 9)));
-    const double rise = r.uniform(1, 2.6), run = r.uniform(0.25, 0.9);
-    for (int i = 0; i < teeth; ++i) {
-      profile.emplace_back(i * depth / teeth + run, eaves + rise);
-      profile.emplace_back((i + 1) * depth / teeth, eaves);
-    }
-  } else if (kind == 2) {
-    const double rise = depth * r.uniform(0.12, 0.4);
-    constexpr int kSteps = 12;
-    for (int i = 1; i < kSteps; ++i)
-      profile.emplace_back(depth * (1 - std::cos(M_PI * i / kSteps)) / 2,
-                           eaves + rise * std::sin(M_PI * i / kSteps));
-    profile.emplace_back(depth, eaves);
-  } else {
-    const double ridge = depth * (r.chance(0.7) ? 0.5 : r.uniform(0.3, 0.7));
-    profile.emplace_back(ridge, eaves + 0.5 * depth * r.uniform(0.06, 0.7));
-    profile.emplace_back(depth, eaves);
-  }
-  return profile;
 }
 
 House make_hall(const Pool& pool, std::uint64_t seed, bool has_sloping_ground) {

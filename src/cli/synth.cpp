@@ -9,6 +9,7 @@
 #include "exporters/files.h"
 #include "numbers.h"
 #include "synth/paint.h"
+#include "synth_scene.h"
 
 namespace colod::cli {
 namespace {
@@ -17,8 +18,9 @@ struct SynthArguments {
   SynthOptions options;
   std::string out, scan;
   int threads = 0;
-  bool is_textured = false;
+  bool is_textured = false, is_scene = false;
   double texel = 0.03;
+  SynthLayout layout = SynthLayout::kObj;
 };
 
 /// A scan is painted with what its clean model shows.
@@ -63,13 +65,44 @@ int synth(const SynthArguments& a) {
   return 0;
 }
 
+/// Apart from the streets' options, of which it takes the few that say the same of it.
+void add_scene_options(CLI::App& app, SynthArguments& a) {
+  CLI::Option* scene = app.add_flag(
+      "--scene", a.is_scene,
+      "a whole place: hills, roads, houses, rows, courts, halls, sheds, trees, cars as "
+      "one textured mesh in tiles, with its truth; --buildings (default 100), --seed, "
+      "--scan-edge and --texel-size (default 0.1) hold for it");
+  for (const char* other : {"--scan", "--noise", "--density", "--sizes", "--variety", "--plan",
+                            "--slopes", "--texture"})
+    scene->excludes(app.get_option(other));
+  app.add_option(
+         "--layout", a.layout,
+         "of a scene's files: obj, as ContextCapture writes them (default), odm, or 3dtiles")
+      ->needs(scene)
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SynthLayout>{{"obj", SynthLayout::kObj},
+                                             {"odm", SynthLayout::kOdm},
+                                             {"3dtiles", SynthLayout::k3dTiles}}));
+}
+
+int synth_scene(const SynthArguments& a, bool has_buildings, bool has_texel) {
+  limit_threads(a.threads);
+  SynthSceneOptions options;
+  options.seed = a.options.seed, options.edge = a.options.scan_edge;
+  if (has_buildings) options.buildings = a.options.buildings;
+  if (has_texel) options.texel = a.texel;
+  write_synth_scene(options, a.layout, a.out);
+  return 0;
+}
+
 }  // namespace
 
 Run add_synth(CLI::App& app) {
   auto a = std::make_shared<SynthArguments>();
   app.add_option("-o,--out", a->out, "folder to write to")->required();
-  app.add_option("--buildings", a->options.buildings, "how many, default 20")
-      ->check(number_between(1, 10000));
+  const CLI::Option* buildings =
+      app.add_option("--buildings", a->options.buildings, "how many, default 20")
+          ->check(number_between(1, 10000));
   app.add_option("--seed", a->options.seed, "of everything drawn at random, default 1")
       ->check(number_between(0.0, 9007199254740992.0));
   const CLI::Option* scan =
@@ -101,11 +134,14 @@ Run add_synth(CLI::App& app) {
   app.add_flag(
       "--texture", a->is_textured,
       "brick, plaster, tiles, glass and a word on every wall, in OBJ, MTL and JPEG; scans too");
-  app.add_option("--texel-size", a->texel, "of the textures [m], default 0.03")
-      ->check(number_between(0.002, 1.0));
+  const CLI::Option* texel =
+      app.add_option("--texel-size", a->texel, "of the textures [m], default 0.03")
+          ->check(number_between(0.002, 1.0));
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
-  return [a, scan] {
+  add_scene_options(app, *a);
+  return [a, scan, buildings, texel] {
+    if (a->is_scene) return synth_scene(*a, buildings->count() > 0, texel->count() > 0);
     a->options.is_drone = a->scan == "drone";
     a->options.is_scan = scan->count() > 0 && !a->options.is_drone;
     return synth(*a);
