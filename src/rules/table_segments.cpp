@@ -126,8 +126,7 @@ std::vector<RuleInfo> form_rules() {
        .does =
            "A voxel is lost with the segments that it sees most of, as many as leave it less than "
            "half of what its rays met; a part of the outline, seen along the three axes, with "
-           "all voxels of its column. What is no element is worth no less than seven tenths of "
-           "its part of any one outline. Where an alcove is dropped the building closes over it.",
+           "all voxels of its column. Where an alcove is dropped the building closes over it.",
        .paper = "A voxel is its segment's; volume only.",
        .reason =
            "A pane that a few voxels see most of counted as 2 % of a house, and a spire, which "
@@ -135,13 +134,6 @@ std::vector<RuleInfo> form_rules() {
        .parameters = {{"outline", "", kOutlineShare,
                        "of the fidelity; with 0.25 a spire goes, with 0.5 repeated balconies and "
                        "chimneys stay (synth-scan, seeds 1 and 2)"},
-                      {"worst outline", "", kWorstOutline,
-                       "of a set's share of one outline, at least; sets of elements apart. More "
-                       "than a fourteenth of one side's outline thus stays on layer 0: a link or "
-                       "annex has little volume (als/block-a: 16690, 16494)"},
-                      {"main shape", "", kMainShape,
-                       "what that comes to at most: more than layer 0 may lose, whatever other "
-                       "sets are worth"},
                       {"together", "", kMostTogether,
                        "segments of a set: a bound; what only more of them open together counts as "
                        "never lost"}},

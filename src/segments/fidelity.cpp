@@ -2,8 +2,7 @@
 // least half of what its rays met is of M: the rule of section 3.1, asked of M's planes alone.
 // Differs: robust rules only; to the letter a voxel is its segment's, and a pane that a few voxels
 //   see most of would be worth 2 % of a house. Three tenths of the fidelity are outline (seen
-//   along the three axes), since a spire has little volume for what it shows; a fourteenth of one
-//   outline alone is as much as layer 0 may lose, unless elements make it. Where an alcove is
+//   along the three axes), since a spire has little volume for what it shows. Where an alcove is
 //   dropped the building closes over it, so that its walls are nobody's.
 // Notation: a voxel's sets: the segments that it sees most of, as many as have to be dropped
 //   together before it is open.
@@ -98,12 +97,11 @@ std::vector<double> outline_counts(const HitGrid& grid, const std::vector<int>& 
   return counts;
 }
 
-std::vector<double> shares_of(std::vector<double> counts, std::size_t sets) {
+void add_share(const std::vector<double>& counts, double weight, std::vector<double>& shares) {
   double sum = 0;
   for (const double c : counts) sum += c;
-  counts.resize(sets, 0);
-  for (double& c : counts) c = sum > 0 ? c / sum : 0;
-  return counts;
+  shares.resize(std::max(shares.size(), counts.size()), 0);
+  for (std::size_t i = 0; i < counts.size() && sum > 0; ++i) shares[i] += weight * counts[i] / sum;
 }
 
 }  // namespace
@@ -130,28 +128,13 @@ std::vector<Coverage> fidelity_coverage(const HitGrid& grid, const Segments& seg
       counts.resize(std::max(counts.size(), sets.size()), 0);
       counts[set] += static_cast<double>(alcove.voxels);
     }
-  std::array<std::vector<double>, 3> outlines;
+  std::vector<double> shares;
+  add_share(counts, 1 - kOutlineShare, shares);
   for (int axis = 0; axis < 3; ++axis)
-    outlines[axis] = outline_counts(grid, set_of_voxel, axis, sets);
-  for (std::vector<double>& outline : outlines)
-    outline = shares_of(std::move(outline), sets.size());
-  const std::vector<double> volume = shares_of(std::move(counts), sets.size());
+    add_share(outline_counts(grid, set_of_voxel, axis, sets), kOutlineShare / 3, shares);
   std::vector<Coverage> coverage;
-  double sum = 0;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    double mean = (1 - kOutlineShare) * volume[i], worst = 0;
-    for (const std::vector<double>& outline : outlines)
-      mean += kOutlineShare / 3 * outline[i], worst = std::max(worst, outline[i]);
-    const std::vector<int>& set = sets[static_cast<int>(i)];
-    const bool is_body = !set.empty() && std::all_of(set.begin(), set.end(), [&](int s) {
-      return segments.segments[s].kind == ElementKind::kPlain;
-    });
-    const double share =
-        is_body ? std::max(mean, std::min(kWorstOutline * worst, kMainShape)) : mean;
-    sum += share;
-    if (share > 0) coverage.push_back({set, share});
-  }
-  for (Coverage& c : coverage) c.share /= sum;
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (shares[i] > 0) coverage.push_back({sets[static_cast<int>(i)], shares[i]});
   std::sort(coverage.begin(), coverage.end(),
             [](const Coverage& a, const Coverage& b) { return a.segments < b.segments; });
   return coverage;

@@ -21,7 +21,5 @@ constexpr double kMostOthers = 2.0;    // of the element's area: planes of other
 constexpr double kSameElement = 0.5;   // of its area that an earlier one has taken: it is that one
 constexpr int kMostTogether = 6;       // segments of a set: more are never dropped together
 constexpr double kOutlineShare = 0.3;  // of the fidelity
-constexpr double kWorstOutline = 0.7;  // of a set's share of one outline, at least, up to …
-constexpr double kMainShape = 0.08;    // … more than layer 0 may lose
 
 }  // namespace colod::parameters::segments
