@@ -131,7 +131,7 @@ std::vector<double> wall_feet(const Field& f, const std::vector<int>& rim,
 
 }  // namespace
 
-Ground find_ground(const Field& f, const Mesh& mesh) {
+Ground find_ground(const Field& f, const Mesh& mesh, bool has_ground) {
   std::vector<double> seen, rim_heights, corners;
   for (int i = 0; i < f.size(); ++i)
     if (f.has(i)) seen.push_back(f.height[i]);
@@ -144,7 +144,7 @@ Ground find_ground(const Field& f, const Mesh& mesh) {
   Ground g;
   const std::vector<double> lowest = lowest_corners(f, mesh);
   g.is_ground.assign(f.size(), 0);
-  if (rise > kLeastRise) g.is_ground = flood(f, rim, lowest, low, rise);
+  if (has_ground && rise > kLeastRise) g.is_ground = flood(f, rim, lowest, low, rise);
   std::vector<double> feet = ground_feet(f, g.is_ground);
   if (feet.size() * f.cell <= kLeastFeet) {
     g.is_ground.assign(f.size(), 0);

@@ -14,7 +14,7 @@ struct Ground {
 };
 
 /// The skirt around a building: what is low and reached from the rim without a step. There may be
-/// none.
-Ground find_ground(const Field& field, const Mesh& mesh);
+/// none, and is none without `has_ground`.
+Ground find_ground(const Field& field, const Mesh& mesh, bool has_ground = true);
 
 }  // namespace colod::relief

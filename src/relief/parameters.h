@@ -25,6 +25,7 @@ constexpr double kCoarse = 0.6, kToldBulges = 4;      // … metres of edge, or 
 constexpr double kWide = 1.2, kWideBulge = 0.05;      // metres of edge that tell no window at all
 constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
 constexpr double kLeastSupport = 0.1;   // of the walls that are drawn: seen, in part
+constexpr double kLeastRoof = 0.15;     // of what is seen from above: with less there is no ground
 constexpr double kExplained = 0.7;      // of the surface: near roofs and walls …
 constexpr double kWideExplained = 0.5;  // … where nothing else can be told
 

@@ -72,12 +72,12 @@ double patch_noise(const std::vector<Patch>& patches) {
   return 0;
 }
 
-Plan draw_plan(const Mesh& mesh, const Melting& melting) {
+Plan draw_plan(const Mesh& mesh, const Melting& melting, bool has_ground = true) {
   const double edge = melting.edge;
   const RayScene rays(mesh);
   Plan plan;
   plan.field = make_field(mesh, rays, edge);
-  plan.ground = find_ground(plan.field, mesh);
+  plan.ground = find_ground(plan.field, mesh, has_ground);
   const double span = std::max(kLeastSpan, edge);
   plan.noise = std::clamp(std::max(roof_noise(plan.field), melting.bulge), kLeastNoise, kMostNoise);
   const std::vector<char> is_roof = roof_cells(plan.field, plan.ground);
@@ -248,6 +248,14 @@ double supported_share(const Mesh& mesh, const Relief& relief) {
   return drawn > 0 ? seen / drawn : 0;
 }
 
+/// 0..1 of what is seen from above that is roof.
+double roof_share(const Plan& plan) {
+  int seen = 0, roofs = 0;
+  for (int i = 0; i < plan.field.size(); ++i)
+    if (plan.field.has(i)) ++seen, roofs += plan.labels.of_cell[i] >= 0;
+  return seen > 0 ? static_cast<double>(roofs) / seen : 0;
+}
+
 /// The mesh about the z axis.
 Mesh turned(Mesh mesh, double angle) {
   const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
@@ -265,7 +273,8 @@ void turn(Relief& relief, double angle) {
 }
 
 std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
-  const Plan plan = draw_plan(mesh, melting);
+  Plan plan = draw_plan(mesh, melting);
+  if (roof_share(plan) < kLeastRoof) plan = draw_plan(mesh, melting, false);
   Relief relief;
   relief.foot = plan.ground.foot;
   relief.noise = plan.noise;

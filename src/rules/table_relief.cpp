@@ -25,6 +25,9 @@ std::vector<Parameter> melted_numbers() {
        "share of the surface that is upright or level to the last digit: what people draw"},
       {"least_support", "", relief::kLeastSupport,
        "of the walls that are drawn, in faces of the mesh: terrain has no walls"},
+      {"least_roof", "", relief::kLeastRoof,
+       "of what is seen from above: with less the building was taken for ground, and there is "
+       "none"},
       {"explained", "", relief::kExplained,
        "share of the surface that must lie near the roofs and walls: canopies and bridges are no "
        "relief"},
