@@ -372,8 +372,9 @@ void encode_cells(Scene& scene, const std::function<void(const Encoded&)>& take)
     scene.finished[first] = {std::move(tile), end};
     if (take) {
       for (std::size_t i = first; i < end; ++i) {
-        take(scene.contents[i].file);
-        scene.contents[i].file.bytes = {};
+        const Encoded file = std::move(scene.contents[i].file);  // an emptied string keeps its room
+        take(file);
+        scene.contents[i].file.path = file.path;
       }
       take(scene.cells.back());
       scene.cells.clear();

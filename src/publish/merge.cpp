@@ -128,8 +128,10 @@ class Merge {
             },
         .drop =
             [&](int b) {
-              for (ExportLevel& level : buildings[static_cast<std::size_t>(b)].levels)
-                level.mesh = {}, level.look = {};
+              for (ExportLevel& level : buildings[static_cast<std::size_t>(b)].levels) {
+                const ExportLevel gone = std::move(level);  // an emptied string keeps its room
+                level = {gone.layers, {}, gone.gsd, gone.deviation};
+              }
             },
         .coarsest =
             [&](int b) {
