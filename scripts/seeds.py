@@ -24,7 +24,7 @@ def make_seeds(colod, folder):
     with open(os.path.join(folder, 'house.obj'), 'w', encoding='ascii') as file:
         file.write(HOUSE)
     small = ['--ns', '12', '--nr', '8', '--quiet', '--no-report-html']
-    seeds = {kind: [] for kind in ['obj', 'ply', 'off', 'stl', 'gltf', 'glb', 'xyz', 'pwn', 'b3dm', 'check', 'tileset', 'place', 'scene', 'sidecar',
+    seeds = {kind: [] for kind in ['obj', 'ply', 'off', 'stl', 'gltf', 'glb', 'xyz', 'pwn', 'las', 'b3dm', 'check', 'tileset', 'place', 'scene', 'sidecar',
                                   'options']}
     for compression in ['none', 'draco', 'meshopt']:
         run('build', 'house.obj', '-o', compression, '--compression', compression, '--format', 'glb,3dtiles,ply', *small)
@@ -55,6 +55,10 @@ def make_seeds(colod, folder):
     seeds['xyz'] = [('x.xyz', ['info', 'x.xyz'], cloud.encode(), {})]
     seeds['pwn'] = [('x.pwn', ['info', 'x.pwn'], ('%d\n' % len(points) + ''.join('%g %g %g\n' % tuple(p) for p in points) +
                                                  '0 0 1\n' * len(points)).encode(), {})]
+    header = struct.pack('<4s20xBB68xHII', b'LASF', 1, 2, 227, 227, 0) + struct.pack('<BHI20x', 0, 20, len(points))
+    header += struct.pack('<6d6d', 0.01, 0.01, 0.01, 0, 0, 0, 8, 0, 6, 0, 7, 0)
+    seeds['las'] = [('x.las', ['info', 'x.las'], header + b''.join(struct.pack('<3iHBBbBH', *[int(100 * c) for c in p], 0, 9, 6, 0, 0, 0)
+                                                                   for p in points), {})]
     glb = read('none/buildings/house.glb')
     length = struct.unpack_from('<I', glb, 12)[0]
     document = json.loads(glb[20:20 + length])

@@ -199,8 +199,8 @@ class COLOD_API Scene {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The buildings of files and folders: OBJ, PLY, OFF, STL, glTF/GLB, and points as PLY, XYZ, PTS,
-/// CSV, PWN; docs/options.md says how files are taken apart into buildings.
+/// The buildings of files and folders: OBJ, PLY, OFF, STL, glTF/GLB, and points as LAS, PLY, XYZ,
+/// PTS, CSV, PWN; docs/options.md says how files are taken apart into buildings.
 COLOD_API Scene build(const std::vector<std::string>& paths, const Options& options = {},
                       const Callbacks& callbacks = {});
 

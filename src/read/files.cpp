@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kMeshes[] = {".obj", ".ply", ".off", ".stl", ".gltf", ".glb", ".b3dm"};
-constexpr const char* kClouds[] = {".xyz", ".pwn", ".pts"};
+constexpr const char* kClouds[] = {".xyz", ".pwn", ".pts", ".las", ".laz"};
 constexpr const char* kTables[] = {".asc", ".csv", ".txt"};  // often something else
 constexpr int kMostEntries = 100000;  // of subfolders that are looked through for a count
 
@@ -32,8 +32,6 @@ struct Foreign {
 constexpr const char* kByAssimp =
     "is not read: `assimp export IN OUT.glb`, or Blender's import and glTF export, converts it";
 constexpr Foreign kForeign[] = {
-    {".las", "LAS is not read: `pdal translate IN.las OUT.ply` converts it"},
-    {".laz", "LAZ is not read: `pdal translate IN.laz OUT.ply` converts it"},
     {".e57", "E57 is not read: `pdal translate IN.e57 OUT.ply` converts it"},
     {".ifc", "IFC is not read: `IfcConvert IN.ifc OUT.glb` converts it"},
     {".gml",

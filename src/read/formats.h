@@ -108,6 +108,10 @@ RawFile read_obj(const std::string& path, const std::string& bytes);
 RawFile read_off(const std::string& path, const std::string& bytes);
 RawFile read_stl(const std::string& path, const std::string& bytes);
 RawFile read_points(const std::string& path, const std::string& bytes, bool is_pwn);
+/// LAS 1.0 to 1.4: the points of class 6 (building); in a file without any, those whose class is
+/// not ground, plants, noise or another known thing. LAZ is unpacked by laszip, las2las or pdal.
+RawFile read_las(const std::string& path, std::string_view bytes);
+RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options);
 RawFile read_ply(const std::string& path, const std::string& bytes);
 /// `options` say which level is read, and what it and the files beside it may take. `begin`: where
 /// in the file `bytes` begin, which go on to its end.

@@ -79,12 +79,13 @@ std::vector<Source> read_file(const InputFile& file, const ReadOptions& options 
 
 /// Reads every INPUT: a file, or a folder (each supported file in it, sorted by name; subfolders
 /// with is_recursive). Formats: OBJ, PLY (mesh or points, text or binary), OFF, STL, glTF/GLB
-/// (Draco and meshopt too), points as XYZ, PWN, PTS, ASC, CSV, TXT. Validates: coordinates finite
-/// (faces that use bad ones are dropped with a warning; points too), indices in range (otherwise a
-/// failure), at least one face of positive area or 3 points; polygons are fan-triangulated (concave
-/// ones by ear/CDT). Small pieces absurdly far from the rest are left out. Clouds without normals
-/// get estimated and oriented ones, with a warning. Coordinates that are degrees are a failure.
-/// Throws Error{kInput} only when an INPUT does not exist or a folder holds no supported file.
+/// (Draco and meshopt too), points as LAS, LAZ, XYZ, PWN, PTS, ASC, CSV, TXT. Validates:
+/// coordinates finite (faces that use bad ones are dropped with a warning; points too), indices in
+/// range (otherwise a failure), at least one face of positive area or 3 points; polygons are
+/// fan-triangulated (concave ones by ear/CDT). Small pieces absurdly far from the rest are left
+/// out. Clouds without normals get estimated and oriented ones, with a warning. Coordinates that
+/// are degrees are a failure. Throws Error{kInput} only when an INPUT does not exist or a folder
+/// holds no supported file.
 ReadResult read_sources(const std::vector<std::string>& inputs, const ReadOptions& options = {});
 
 /// A building that a caller holds in memory.

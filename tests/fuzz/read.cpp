@@ -14,8 +14,8 @@
 
 namespace {
 
-constexpr std::array kSuffixes{".obj", ".ply", ".off", ".stl", ".gltf",
-                               ".glb", ".xyz", ".pwn", ".csv", ".b3dm"};
+constexpr std::array kSuffixes{".obj", ".ply", ".off", ".stl",  ".gltf", ".glb",
+                               ".xyz", ".pwn", ".csv", ".b3dm", ".las"};
 
 void check(const colod::Source& source) {
   const auto count = static_cast<int>(source.mesh.vertices.size());

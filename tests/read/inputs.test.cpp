@@ -154,7 +154,7 @@ TEST_CASE(
     "files that are not read stand in a warning, and larger ones than the budget fail unread") {
   const TempFolder folder;
   folder.write("a.obj", obj_text(kHouse));
-  folder.write("b.las", "LASF");
+  folder.write("b.e57", "ASTM-E57");
   folder.write("c.ifc", "ISO-10303-21;");
   const Inventory all = take_inventory({folder.path.string()});
   CHECK_THAT(joined(all.warnings), Contains("pdal") && Contains("1 more file"));

@@ -345,7 +345,7 @@ TEST_CASE("PLY normals of no length are estimated") {
 
 TEST_CASE("formats that are not read say in one line how to convert them") {
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"a.las", "pdal"},   {"a.LAZ", "pdal"},          {"a.ifc", "IfcConvert"}, {"a.dae", "assimp"},
+      {"a.e57", "pdal"},   {"a.PNTS", "pdal"},         {"a.ifc", "IfcConvert"}, {"a.dae", "assimp"},
       {"a.fbx", "assimp"}, {"a.gml", "citygml-tools"}, {"a.city.json", "cjio"}, {"a.json", "cjio"}};
   for (const auto& [name, tool] : files) {
     const std::string message = failure(name, R"({"type":"CityJSON","version":"2.0"})");
