@@ -97,13 +97,8 @@ HasFile looks_into(const std::string& out) {
   };
 }
 
-int merge(const CellArguments& a) {
-  const auto start = std::chrono::steady_clock::now();
-  check_output(a.output.options);
-  limit_threads(a.run.threads);
-  const Log log = a.run.log();
-  const CellLock lock(a.plan.path);
-  PlannedScene all = read_planned(a, log);
+/// What the cells' exports hand over. Throws Error{kInput} where there was none.
+std::vector<MergedCell> exported_cells(const CellArguments& a, const PlannedScene& all) {
   std::vector<MergedCell> cells;
   for (std::size_t cell = 0; cell < all.names.size(); ++cell) {
     const std::string path = cell_export(a.plan.path, cell);
@@ -114,6 +109,17 @@ int merge(const CellArguments& a) {
                      buildings_of(Store(cell_scene(a.plan.path, cell), false), all.names[cell]),
                      remedy});
   }
+  return cells;
+}
+
+int merge(const CellArguments& a) {
+  const auto start = std::chrono::steady_clock::now();
+  check_output(a.output.options);
+  limit_threads(a.run.threads);
+  const Log log = a.run.log();
+  const CellLock lock(a.plan.path);
+  PlannedScene all = read_planned(a, log);
+  std::vector<MergedCell> cells = exported_cells(a, all);
   make_folder(a.output.out);
   const MergeTasks tasks{.take = [&](const Encoded& file) { write_file(a.output.out, file); },
                          .write = [&](const std::string& path,
