@@ -3,7 +3,7 @@
 //
 // *Differs:* no --rules here.
 //
-// *Notation:* W, D: width and depth of a block.
+// *Notation:* none.
 #include "town_filler.h"
 
 #include <algorithm>
@@ -11,8 +11,6 @@
 
 namespace colod::synth {
 namespace {
-
-constexpr double W = kBlockWidth, D = kBlockDepth;
 
 /// A side of a block that a building looks to.
 enum class Side { kFront, kBack, kLeft, kRight };
@@ -63,13 +61,13 @@ class Filler {
         plot.origin = {along, back}, plot.yaw = 0;
         break;
       case Side::kBack:
-        plot.origin = {W - along, D - back}, plot.yaw = M_PI;
+        plot.origin = {kBlockWidth - along, kBlockDepth - back}, plot.yaw = M_PI;
         break;
       case Side::kLeft:
-        plot.origin = {back, D - along}, plot.yaw = -M_PI / 2;
+        plot.origin = {back, kBlockDepth - along}, plot.yaw = -M_PI / 2;
         break;
       case Side::kRight:
-        plot.origin = {W - back, along}, plot.yaw = M_PI / 2;
+        plot.origin = {kBlockWidth - back, along}, plot.yaw = M_PI / 2;
         break;
     }
     plot.yaw += turn;
@@ -77,7 +75,7 @@ class Filler {
   }
 
   Vec2 place(Side side, double along, double back) const {
-    return side == Side::kFront ? Vec2(along, back) : Vec2(W - along, D - back);
+    return side == Side::kFront ? Vec2(along, back) : Vec2(kBlockWidth - along, kBlockDepth - back);
   }
 
   bool is_free(const Vec2& p, double around) const {
@@ -96,7 +94,7 @@ class Filler {
   void plant(int count, double least, double most) {
     for (int i = 0; i < count; ++i) {
       const double radius = r_.uniform(least, most);
-      const Vec2 at(r_.uniform(1, W - 1), r_.uniform(1, D - 1));
+      const Vec2 at(r_.uniform(1, kBlockWidth - 1), r_.uniform(1, kBlockDepth - 1));
       if (!is_free(at, r_.uniform(0.55, 1.1) * radius + 0.4)) continue;
       put(PropKind::kTree, at, 0, {radius, radius}, radius * r_.uniform(1.6, 3));
     }
@@ -122,7 +120,7 @@ class Filler {
   void park(int cars) {
     for (int i = 0; i < cars; ++i) {
       const bool is_x = r_.chance(0.6);
-      const double along = r_.uniform(3, (is_x ? W : D) - 3), kerb = 2.7;
+      const double along = r_.uniform(3, (is_x ? kBlockWidth : kBlockDepth) - 3), kerb = 2.7;
       const Vec2 at = is_x ? Vec2(along, -kerb) : Vec2(-kerb, along);
       const bool is_near = std::any_of(out_.props.begin(), out_.props.end(), [&](const Prop& p) {
         return p.kind == PropKind::kCar && (p.at - at).norm() < 5.5;
@@ -144,22 +142,23 @@ class Filler {
       while (!is_full()) {
         DrawnPlan drawn = draw_plan(r_, r_.uniform(0.1, 0.6));
         if (drawn.depth > 15) drawn = draw_rectangle(r_, 8, 14, 7, 12);
-        if (along + drawn.width > W - 3) break;
+        if (along + drawn.width > kBlockWidth - 3) break;
         const double back = r_.uniform(4, 6.5);
         build(PlotKind::kDetached, drawn, side, along, back, 0, r_.uniform(-0.03, 0.03));
-        if (r_.chance(0.4) && back + drawn.depth < D / 2 - 7) {
+        if (r_.chance(0.4) && back + drawn.depth < kBlockDepth / 2 - 7) {
           const DrawnPlan shed = draw_rectangle(r_, 3, 6, 2.6, 3.6);
-          build(PlotKind::kShed, shed, side, along + r_.uniform(0, 3), D / 2 - 1.5 - shed.depth, 0,
-                r_.uniform(-0.1, 0.1));
+          build(PlotKind::kShed, shed, side, along + r_.uniform(0, 3),
+                kBlockDepth / 2 - 1.5 - shed.depth, 0, r_.uniform(-0.1, 0.1));
         }
         const double gap = r_.chance(0.2) ? r_.uniform(2.2, 2.8) : r_.uniform(4, 9);
         along += drawn.width + gap;
         if (gap > 3.5)
-          enclose(place(side, along - gap / 2, 0.6), place(side, along - gap / 2, D / 2 - 1));
+          enclose(place(side, along - gap / 2, 0.6),
+                  place(side, along - gap / 2, kBlockDepth / 2 - 1));
       }
-      if (r_.chance(0.7)) enclose(place(side, 1, 0.5), place(side, W - 1, 0.5));
+      if (r_.chance(0.7)) enclose(place(side, 1, 0.5), place(side, kBlockWidth - 1, 0.5));
     }
-    enclose({1, D / 2}, {W - 1, D / 2});
+    enclose({1, kBlockDepth / 2}, {kBlockWidth - 1, kBlockDepth / 2});
     plant(16 + r_.pick(18), 1.0, 4.2);
   }
 
@@ -183,27 +182,29 @@ class Filler {
 
   void fill_rows() {
     for (const Side side : {Side::kFront, Side::kBack}) {
-      const double back = r_.uniform(3, 5), middle = r_.uniform(0.4, 0.6) * W;
+      const double back = r_.uniform(3, 5), middle = r_.uniform(0.4, 0.6) * kBlockWidth;
       const bool is_parted = r_.chance(0.6);
-      add_row(side, 3, is_parted ? middle - 1.6 : W - 3, back, 9, 11.5, false);
-      if (is_parted) add_row(side, middle + 1.6, W - 3, back, 9, 11.5, false);
-      for (double along = 9; along < W - 8; along += r_.uniform(6, 14))
-        enclose(place(side, along, back + 13), place(side, along, D / 2 - 1));
+      add_row(side, 3, is_parted ? middle - 1.6 : kBlockWidth - 3, back, 9, 11.5, false);
+      if (is_parted) add_row(side, middle + 1.6, kBlockWidth - 3, back, 9, 11.5, false);
+      for (double along = 9; along < kBlockWidth - 8; along += r_.uniform(6, 14))
+        enclose(place(side, along, back + 13), place(side, along, kBlockDepth / 2 - 1));
     }
-    enclose({2, D / 2}, {W - 2, D / 2});
+    enclose({2, kBlockDepth / 2}, {kBlockWidth - 2, kBlockDepth / 2});
     plant(12 + r_.pick(12), 0.9, 2.8);
   }
 
   void fill_perimeter() {
     constexpr double kDepth = 11;
-    const double left = r_.uniform(4, 9), right = W - r_.uniform(4, 9);
+    const double left = r_.uniform(4, 9), right = kBlockWidth - r_.uniform(4, 9);
     add_row(Side::kFront, left, right, 1.5, kDepth, kDepth, true);
-    add_row(Side::kBack, W - right, W - left, 1.5, kDepth, kDepth, true);
+    add_row(Side::kBack, kBlockWidth - right, kBlockWidth - left, 1.5, kDepth, kDepth, true);
     const double foot = 1.5 + kDepth;
-    if (r_.chance(0.8)) add_row(Side::kLeft, foot, D - foot, left, 9, kDepth, true);
-    if (r_.chance(0.6)) add_row(Side::kRight, foot, D - foot, W - right, 9, kDepth, true);
+    if (r_.chance(0.8)) add_row(Side::kLeft, foot, kBlockDepth - foot, left, 9, kDepth, true);
+    if (r_.chance(0.6))
+      add_row(Side::kRight, foot, kBlockDepth - foot, kBlockWidth - right, 9, kDepth, true);
     const DrawnPlan shed = draw_rectangle(r_, 4, 7, 3, 5);
-    build(PlotKind::kShed, shed, Side::kFront, W / 2 - 8 + r_.uniform(0, 10), D / 2 - 3, 0, 0.05);
+    build(PlotKind::kShed, shed, Side::kFront, kBlockWidth / 2 - 8 + r_.uniform(0, 10),
+          kBlockDepth / 2 - 3, 0, 0.05);
     plant(14, 1.2, 3.6);
   }
 
@@ -213,7 +214,7 @@ class Filler {
       DrawnPlan drawn = draw_plan(r_, 1);
       for (int attempt = 0; attempt < 60 && drawn.name != "court"; ++attempt)
         drawn = draw_plan(r_, 1);
-      if (along + drawn.width > W - 4) break;
+      if (along + drawn.width > kBlockWidth - 4) break;
       build(PlotKind::kCourt, drawn, Side::kFront, along, 3);
       along += drawn.width + r_.uniform(4, 7);
     }
@@ -221,7 +222,7 @@ class Filler {
     while (!is_full()) {
       DrawnPlan drawn = draw_plan(r_, 0.6);
       if (drawn.name == "court" || drawn.depth > 20) drawn = draw_rectangle(r_, 10, 18, 9, 13);
-      if (along + drawn.width > W - 4) break;
+      if (along + drawn.width > kBlockWidth - 4) break;
       build(PlotKind::kDetached, drawn, Side::kBack, along, 2.5);
       along += drawn.width + r_.uniform(3.5, 8);
     }
@@ -231,15 +232,17 @@ class Filler {
   void fill_works() {
     out_.is_paved = true;
     const DrawnPlan hall = draw_rectangle(r_, 34, 56, 16, 25);
-    build(PlotKind::kHall, hall, Side::kFront, r_.uniform(3, W - 6 - hall.width), r_.uniform(3, 5));
+    build(PlotKind::kHall, hall, Side::kFront, r_.uniform(3, kBlockWidth - 6 - hall.width),
+          r_.uniform(3, 5));
     const DrawnPlan office = draw_rectangle(r_, 14, 22, 10, 13);
     build(PlotKind::kOffice, office, Side::kBack, 4, 3);
     const DrawnPlan small = draw_rectangle(r_, 12, 20, 9, 14);
-    build(PlotKind::kHall, small, Side::kBack, W - 5 - small.width, 3);
+    build(PlotKind::kHall, small, Side::kBack, kBlockWidth - 5 - small.width, 3);
     const DrawnPlan shed = draw_rectangle(r_, 3, 7, 3, 4);
     build(PlotKind::kShed, shed, Side::kBack, 28, 4);
-    for (double x = 8; x < W - 8; x += 2.7)
-      if (r_.chance(0.45) && is_free({x, D - 20}, 2.8)) add_car({x, D - 20}, M_PI / 2);
+    for (double x = 8; x < kBlockWidth - 8; x += 2.7)
+      if (r_.chance(0.45) && is_free({x, kBlockDepth - 20}, 2.8))
+        add_car({x, kBlockDepth - 20}, M_PI / 2);
     plant(6, 1.2, 2.6);
   }
 

@@ -142,7 +142,8 @@ TEST_CASE("a scene's tiles come back through the reader in each layout") {
   const SynthTile tile = SynthScene({.buildings = 2, .seed = 1, .texel = 0.8}).tile(0);
   const std::string out = folder.path().string();
   ObjCount count;
-  write_file(out, {"obj/Data/Tile_0/Tile_0.obj", "mtllib Tile_0.mtl\n" + tile_obj(tile, "one", count)});
+  write_file(out,
+             {"obj/Data/Tile_0/Tile_0.obj", "mtllib Tile_0.mtl\n" + tile_obj(tile, "one", count)});
   write_file(out, {"obj/Data/Tile_0/Tile_0.mtl", tile_mtl("one", "Tile_0_0.jpg")});
   write_file(out, {"obj/Data/Tile_0/Tile_0_0.jpg", tile_jpeg(tile)});
   CHECK(count.vertices == tile.mesh.vertices.size());
