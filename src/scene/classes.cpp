@@ -221,15 +221,63 @@ std::vector<char> opened(const HeightMap& map, const std::vector<char>& is_in, i
   return pass(pass(is_in, true), false);
 }
 
+/// What stands right beside a building is its parapets and melted walls, down to half its height:
+/// it joins the one whose height is nearest.
+void take_walls(const HeightMap& map, const std::vector<float>& ground,
+                const std::vector<char>& is_open, std::vector<int>& building) {
+  for (int round = 0; round < kWallRounds; ++round) {
+    const std::vector<int> before = building;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (before[i] >= 0 || !is_open[i]) continue;
+      float least = map.top[i] - ground[i];
+      for_each_neighbour(map, i, [&](std::size_t j) {
+        const float step = std::abs(map.top[i] - map.top[j]);
+        if (before[j] >= 0 && step < least) least = step, building[i] = before[j];
+      });
+    }
+  }
+}
+
+/// Tanks, stairs, washing lines: what is not green and lies amid roofs is a part of them, however
+/// rough it is.
+void take_clutter(const HeightMap& map, const std::vector<char>& stands,
+                  std::vector<int>& building) {
+  std::vector<char> is_in(map.size(), 0);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    is_in[i] = stands[i] && building[i] < 0 &&
+               (map.color.empty() || part(greenness(map.color[i]), kGrey, kGreen) < kRoof);
+  const Regions regions = regions_of(map, is_in, INFINITY);
+  std::vector<std::map<int, int>> rims(regions.cells.size());  // by building
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (const int own = regions.of_cell[i]; own >= 0)
+      for_each_neighbour(map, i, [&](std::size_t j) {
+        if (regions.of_cell[j] != own) ++rims[static_cast<std::size_t>(own)][building[j]];
+      });
+  std::vector<int> joined(regions.cells.size(), -1);
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    int all = 0, built = 0, most = 0;
+    for (const auto& [to, count] : rims[r]) {
+      all += count;
+      if (to < 0) continue;
+      built += count;
+      if (count > most) most = count, joined[r] = to;
+    }
+    if (built < kAmid * all) joined[r] = -1;
+  }
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (regions.of_cell[i] >= 0) building[i] = joined[static_cast<std::size_t>(regions.of_cell[i])];
+}
+
 }  // namespace
 
 SceneClasses classify(const HeightMap& map) {
   SceneClasses out;
   out.ground = find_terrain(map);
   const std::vector<float> plant = plantness(map, out.ground);
-  std::vector<char> is_open(map.size(), 0), is_roof = is_open;
+  std::vector<char> stands(map.size(), 0), is_open = stands, is_roof = stands;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    is_open[i] = map.top[i] - out.ground[i] > kLow && plant[i] < kRoof;
+    stands[i] = map.top[i] - out.ground[i] > kLow;
+    is_open[i] = stands[i] && plant[i] < kRoof;
     is_roof[i] = is_open[i] && !is_on_wall(map, i);
   }
   is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
@@ -243,14 +291,17 @@ SceneClasses classify(const HeightMap& map) {
       number[r] = out.buildings++;
   out.of_cell.assign(map.size(), SceneClass::kNothing);
   out.building.assign(map.size(), -1);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (const int r = regions.of_cell[i]; r >= 0)
+      out.building[i] = number[static_cast<std::size_t>(r)];
+  take_walls(map, out.ground, is_open, out.building);
+  take_clutter(map, stands, out.building);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (std::isnan(map.top[i])) continue;
-    const int r = regions.of_cell[i];
-    if (r >= 0) out.building[i] = number[static_cast<std::size_t>(r)];
-    out.of_cell[i] = out.building[i] >= 0                   ? SceneClass::kBuilding
-                     : !(map.top[i] - out.ground[i] > kLow) ? SceneClass::kGround
-                     : plant[i] >= kRoof                    ? SceneClass::kPlant
-                                                            : SceneClass::kRest;
+    out.of_cell[i] = out.building[i] >= 0 ? SceneClass::kBuilding
+                     : !stands[i]         ? SceneClass::kGround
+                     : plant[i] >= kRoof  ? SceneClass::kPlant
+                                          : SceneClass::kRest;
   }
   return out;
 }

@@ -49,6 +49,16 @@ class Place {
     return *this;
   }
 
+  /// Grey boxes less than a metre high, one a square: what stands about on a flat roof.
+  Place& clutter(double x, double y, double w, double h) {
+    cover(x, y, w, h, [&](std::size_t i, double u, double v) {
+      const int box = static_cast<int>(u / 0.8) + 7 * static_cast<int>(v / 0.8);
+      map_.top[i] += static_cast<float>(0.3 * (box % 4));
+      map_.color[i] = {120, 118, 115};
+    });
+    return *this;
+  }
+
   const HeightMap& map() const { return map_; }
 
   /// Of the cells of houses and of those found, what both have.
@@ -131,6 +141,33 @@ TEST_CASE("on slopes and hills ground stays ground and houses are found") {
   const SceneClasses found = classify(hill.map());
   CHECK(found.buildings == 0);
   CHECK(hill.ground_error(found) < 0.3);
+}
+
+TEST_CASE("in a dense quarter ground is found in streets and yards, on slopes, too") {
+  const double slope = GENERATE(0.0, 0.1, 0.2);
+  Place place(260, [&](double x, double y) { return slope * x + 2 * std::sin(y / 40); });
+  int n = 0;
+  for (int row = 0; row < 4;
+       ++row)  // blocks of 70 by 50 m: houses along two streets, yards between
+    for (int column = 0; column < 3; ++column)
+      for (int house = 0; house < 7; ++house)
+        for (const int side : {0, 1}) {
+          const double depth = 14 + n % 4, y = 8 + 58 * row + (side ? 50 - depth : 0);
+          place.house(8 + 78 * column + 10 * house, y, 10, depth, 3 * (1 + (5 * n / 3) % 3) + 0.1);
+          ++n;
+        }
+  const SceneClasses found = classify(place.map());
+  INFO(slope);
+  CHECK(place.overlap(found) > 0.9);
+  CHECK(place.ground_error(found) < 0.6);
+}
+
+TEST_CASE("what stands about on a roof is the roof's, a tree beside it is not") {
+  Place place(60, kLevel);
+  place.house(10, 10, 24, 20, 6).clutter(14, 14, 14, 12).tree(45, 20, 5, 6);
+  const SceneClasses found = classify(place.map());
+  CHECK(found.buildings == 1);
+  CHECK(place.overlap(found) > 0.95);
 }
 
 TEST_CASE("a block is parted where its roofs lie at different heights") {
