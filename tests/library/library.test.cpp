@@ -182,7 +182,8 @@ TEST_CASE("every listed option is one, with its help") {
   for (const colod::OptionInfo& o : all) {
     INFO(o.name);
     CHECK(!o.help.empty());
-    CHECK(o.is_flag == (o.name == "recursive" || o.name == "no-report-html"));
+    CHECK(o.is_flag ==
+          (o.name == "recursive" || o.name == "no-report-html" || o.name == "normal-map"));
   }
 }
 
