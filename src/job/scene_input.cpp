@@ -251,11 +251,15 @@ std::string doubt(const InputFile& file, ReadOptions read) {
   if (is_tile_format(file.path)) return "is a tile of a scene by its format";
   std::error_code error;
   if (std::filesystem::file_size(file.path, error) < kLeastScene || error) return "";
-  if (read.up == Up::kUnsaid) read.up = Up::kAuto;
+  const bool is_axis_said = read.up != Up::kUnsaid;
+  if (!is_axis_said) read.up = Up::kAuto;
   std::string why;
   try {
-    for (const Source& s : read_file(file, read))
+    for (const Source& s : read_file(file, read)) {
       if (why.empty()) why = looks_like_scene(s);
+      if (why.empty() && s.is_turned_back && !is_axis_said && is_wide(s))
+        why = "is as wide as a scene and lies on its side (--up auto turns it)";
+    }
   } catch (const std::exception&) {
     return "";  // whoever reads it for the work tells of it
   }

@@ -99,6 +99,7 @@ std::vector<Source> validate(const std::string& path, const std::string& stem, R
     if (s.is_mesh()) mesh_io::leave_out_strays(s);
     if (s.cloud.points.empty() && !mesh_io::has_area(s.mesh)) continue;
     s.path = path;
+    s.is_turned_back = how.is_turned_back;
     const mesh_io::Part& part = parting.parts[i];
     s.name = safe_name(part.name.empty() ? stem : stem + "_" + part.name);
     s.given_name = part.given.empty() ? stem : part.given;

@@ -2,6 +2,8 @@
 // The registry in room `rules` says what each does and why it has its value.
 #pragma once
 
+#include <cstddef>
+
 namespace colod::parameters::relief {
 
 constexpr double kCellShare = 0.35;                  // of the median edge: a cell

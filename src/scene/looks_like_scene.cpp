@@ -117,4 +117,8 @@ std::string looks_like_scene(const Source& source) {
   return "";
 }
 
+bool is_wide(const Source& source) {
+  return bounding_box(source.mesh.vertices).size().head<2>().maxCoeff() >= kLeastSide;
+}
+
 }  // namespace colod

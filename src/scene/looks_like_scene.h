@@ -11,4 +11,7 @@ namespace colod {
 /// message; empty: it is a building, drawn, too small to tell, or no mesh. O(cells of its plan).
 std::string looks_like_scene(const Source& source);
 
+/// Whether its plan is 50 m long: few buildings are.
+bool is_wide(const Source& source);
+
 }  // namespace colod
