@@ -84,11 +84,11 @@ std::map<std::string, std::string> files_below(const fs::path& folder) {
 
 /// Reports differ in times and memory only.
 std::map<std::string, std::string> timeless(std::map<std::string, std::string> files) {
-  static const std::regex kTime(
+  static const std::regex times(
       "\"timings\": *\\{[^}]*\\}|\"[a-z_]*(seconds?|memory_bytes)\": *[^,}\\n]*");
   auto report = files.find("report.json");
   REQUIRE(report != files.end());
-  report->second = std::regex_replace(report->second, kTime, "");
+  report->second = std::regex_replace(report->second, times, "");
   return files;
 }
 

@@ -168,5 +168,5 @@ TEST_CASE("objects follow their faces, and threads change nothing") {
   for (std::size_t i = 0; i < one.mesh.faces.size(); ++i)
     for (const int v : one.mesh.faces[i])
       CHECK((one.face_object[i] == 1) == (one.mesh.vertices[v].z() > 3.2 ||
-                                          one.mesh.vertices[v].z() == 3.2 && one.face_object[i]));
+                                          (one.mesh.vertices[v].z() == 3.2 && one.face_object[i])));
 }
