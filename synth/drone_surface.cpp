@@ -172,22 +172,13 @@ void bulge(Mesh& mesh, const Flight& flight, std::uint64_t seed) {
 Mesh thin_to_edge(const Mesh& mesh, double edge) {
   constexpr int kMostRounds = 4;
   constexpr double kNearEnough = 0.05;  // of the length asked for
-  const Vec3 center = bounding_box(mesh.vertices).center();
-  std::vector<float> positions;
-  for (const Vec3& v : mesh.vertices)
-    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(v[k] - center[k]));
-  std::vector<std::uint32_t> indices;
-  for (const Face& f : mesh.faces)
-    for (int v : f) indices.push_back(static_cast<std::uint32_t>(v));
+  const IndexedMesh m(mesh);
   double faces = surface_area(mesh) / (0.5 * edge * edge);
   Mesh thin = mesh;
   for (int round = 0; round < kMostRounds; ++round) {
     const auto wanted = static_cast<std::size_t>(std::max(20.0, faces));
-    const auto kept = simplify_indices(positions, indices, 3 * wanted);
-    thin.vertices = mesh.vertices, thin.faces.clear();
-    for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
-      thin.faces.push_back({static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
-                            static_cast<int>(kept[i + 2])});
+    thin.vertices = mesh.vertices;
+    thin.faces = faces_of(simplify_indices(m.positions, m.indices, 3 * wanted));
     const double ratio = median_edge(thin) / edge;
     if (std::abs(ratio - 1) < kNearEnough || faces * ratio * ratio > mesh.faces.size()) break;
     faces *= ratio * ratio;

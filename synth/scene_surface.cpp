@@ -241,20 +241,9 @@ Mesh compacted(const Mesh& mesh) {
 
 Mesh thinned(const Mesh& mesh, const std::vector<char>& is_locked, double error) {
   if (mesh.faces.empty()) return mesh;
-  const Vec3 center = bounding_box(mesh.vertices).center();
-  std::vector<float> positions;
-  for (const Vec3& v : mesh.vertices)
-    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(v[k] - center[k]));
-  std::vector<std::uint32_t> indices;
-  for (const Face& f : mesh.faces)
-    for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
-  const auto kept = simplify_within(positions, indices, is_locked, static_cast<float>(error));
-  Mesh out;
-  out.vertices = mesh.vertices;
-  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
-    out.faces.push_back(
-        {static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]), static_cast<int>(kept[i + 2])});
-  return out;
+  const IndexedMesh m(mesh);
+  return {mesh.vertices,
+          faces_of(simplify_within(m.positions, m.indices, is_locked, static_cast<float>(error)))};
 }
 
 }  // namespace

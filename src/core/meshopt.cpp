@@ -6,6 +6,22 @@
 
 namespace colod {
 
+IndexedMesh::IndexedMesh(const Mesh& mesh) {
+  const Vec3 center = bounding_box(mesh.vertices).center();
+  for (const Vec3& v : mesh.vertices)
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(v[k] - center[k]));
+  for (const Face& f : mesh.faces)
+    for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
+}
+
+std::vector<Face> faces_of(const std::vector<std::uint32_t>& indices) {
+  std::vector<Face> faces;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    faces.push_back({static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]),
+                     static_cast<int>(indices[i + 2])});
+  return faces;
+}
+
 namespace {
 
 const unsigned char* data_of(std::string_view s) {

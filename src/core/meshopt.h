@@ -6,7 +6,21 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry.h"
+
 namespace colod {
+
+/// A mesh as meshoptimizer takes it: three numbers a vertex, from the middle of the mesh's box, and
+/// three indices a face.
+struct IndexedMesh {
+  std::vector<float> positions;
+  std::vector<std::uint32_t> indices;
+
+  explicit IndexedMesh(const Mesh& mesh);
+};
+
+/// The faces that indices stand for.
+std::vector<Face> faces_of(const std::vector<std::uint32_t>& indices);
 
 /// Reorders triangles for the vertex cache and numbers vertices by first use: `order[new]` = old
 /// vertex. `indices` hold the new numbers.

@@ -97,17 +97,24 @@ void read_json(const std::string& text, const std::string& path, const char* wha
   }
 }
 
-struct Store::Impl {
+/// A database of SQLite, closed at the end.
+struct Database {
   std::string path;
   sqlite3* db = nullptr;
 
-  ~Impl();
+  Database() = default;
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  ~Database();
 
   Statement read(const char* sql) const { return {db, path, Stage::kInput, sql}; }
   Statement write(const char* sql) const { return {db, path, Stage::kOutput, sql}; }
   void execute(const char* sql, Stage stage) const;
   /// All of `body` or nothing.
   void transaction(const std::function<void()>& body) const;
+};
+
+struct Store::Impl : Database {
   bool has_row(const char* sql, const std::string& name) const;
   /// All tables, views and triggers as they were made.
   std::vector<std::string> schema() const;

@@ -6,7 +6,6 @@
 
 #include <sqlite3.h>
 
-#include <functional>
 #include <set>
 
 #include "parts.h"
@@ -24,28 +23,7 @@ enum class Content { kNothing, kShelf, kOther };
 
 }  // namespace
 
-struct Shelf::Impl {
-  std::string path;
-  sqlite3* db = nullptr;
-
-  ~Impl() { sqlite3_close(db); }
-
-  Statement read(const char* sql) const { return {db, path, Stage::kInput, sql}; }
-  Statement write(const char* sql) const { return {db, path, Stage::kOutput, sql}; }
-  void execute(const char* sql, Stage stage) const {
-    if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
-      throw Error(stage, path, sqlite3_errmsg(db));
-  }
-  void transaction(const std::function<void()>& body) const {
-    execute("BEGIN IMMEDIATE", Stage::kOutput);
-    try {
-      body();
-      execute("COMMIT", Stage::kOutput);
-    } catch (...) {
-      sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
-      throw;
-    }
-  }
+struct Shelf::Impl : Database {
   /// A view or a trigger, which a file may have, would run when it is read.
   bool has_own_schema() const {
     Statement s = read("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL");

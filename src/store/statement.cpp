@@ -89,4 +89,22 @@ void Statement::check(int code) const {
     throw Error(stage_, path_, std::string("scene file: ") + sqlite3_errmsg(db_));
 }
 
+Database::~Database() { sqlite3_close(db); }
+
+void Database::execute(const char* sql, Stage stage) const {
+  if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
+    throw Error(stage, path, std::string("scene file: ") + sqlite3_errmsg(db));
+}
+
+void Database::transaction(const std::function<void()>& body) const {
+  execute("BEGIN IMMEDIATE", Stage::kOutput);
+  try {
+    body();
+    execute("COMMIT", Stage::kOutput);
+  } catch (...) {
+    sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
 }  // namespace colod

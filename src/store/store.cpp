@@ -47,24 +47,6 @@ CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CA
 
 }  // namespace
 
-Store::Impl::~Impl() { sqlite3_close(db); }
-
-void Store::Impl::execute(const char* sql, Stage stage) const {
-  if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
-    throw Error(stage, path, std::string("scene file: ") + sqlite3_errmsg(db));
-}
-
-void Store::Impl::transaction(const std::function<void()>& body) const {
-  execute("BEGIN IMMEDIATE", Stage::kOutput);
-  try {
-    body();
-    execute("COMMIT", Stage::kOutput);
-  } catch (...) {
-    sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
-    throw;
-  }
-}
-
 bool Store::Impl::has_row(const char* sql, const std::string& name) const {
   Statement s = read(sql);
   return s.bind(name).step();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <fstream>
 
 #include "core/error.h"
 #include "meshes.h"
+#include "temporary_folder.h"
 
 using namespace colod;
 
@@ -180,7 +180,8 @@ TEST_CASE("the tally counts instances, those that never appear, and buildings th
 }
 
 TEST_CASE("truth files: synth's, labels, and what is neither") {
-  const std::string path = "/tmp/colod-truth-test.json";
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "truth.json").string();
   const auto read = [&](const std::string& text) {
     std::ofstream(path) << text;
     return read_truth(path);
@@ -198,6 +199,5 @@ TEST_CASE("truth files: synth's, labels, and what is neither") {
   CHECK_THROWS_AS(read("{}"), Error);
   CHECK_THROWS_AS(read("[1"), Error);
   CHECK_THROWS_AS(read(R"({"buildings": [{"parts": 3}]})"), Error);
-  std::remove(path.c_str());
-  CHECK_THROWS_AS(read_truth(path), Error);
+  CHECK_THROWS_AS(read_truth((folder / "none.json").string()), Error);
 }
