@@ -22,8 +22,6 @@ constexpr double kLeastCovered = 0.1;  // of a footprint's area, by what faces u
 constexpr double kFarBeyond =
     1000;  // metres beyond the scene: no footprint that reaches it goes on
 constexpr std::size_t kSurveyImages = std::size_t{128} << 20;  // bytes of decoded images
-constexpr std::uintmax_t kLeastScene =
-    100'000;                 // bytes of a file: three houses on terrain take more
 constexpr double kRow = 64;  // metres: buildings are read row by row, so that tiles last
 
 void say(const Tell& tell, Level level, const std::string& text) {
@@ -245,38 +243,42 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
-/// What tells that a file is a place or a piece of one, or nothing. Small ones are not read for it,
-/// others the way up that they seem to stand.
-std::string doubt(const InputFile& file, ReadOptions read) {
-  if (is_tile_format(file.path)) return "is a tile of a scene by its format";
-  std::error_code error;
-  if (std::filesystem::file_size(file.path, error) < kLeastScene || error) return "";
+/// What tells that a file is a place or a piece of one. It is read the way up that it seems to
+/// stand.
+PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
+  if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;
-  std::string why;
+  PlaceDoubt found;
   try {
     for (const Source& s : read_file(file, read)) {
-      if (why.empty()) why = looks_like_scene(s);
-      if (why.empty() && s.is_turned_back && !is_axis_said && is_wide(s))
-        why = "is as wide as a scene and lies on its side (--up auto turns it)";
+      if (found.is_certain) break;
+      if (const PlaceDoubt own = looks_like_scene(s); !own.why.empty()) found = own;
+      if (!found.is_certain && s.is_turned_back && !is_axis_said && is_wide(s))
+        found = {"is as wide as a scene and lies on its side (--up auto turns it)", true};
     }
   } catch (const std::exception&) {
-    return "";  // whoever reads it for the work tells of it
+    return {};  // whoever reads it for the work tells of it
   }
-  return why;
+  return found;
 }
 
 /// Meshes that are taken for buildings since nothing says that they are scenes: a failure of each
-/// that looks like one, though it is built.
+/// that looks like one, though it is built, and a warning where it may be.
 void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
-  std::vector<std::string> why(inventory.files.size());
+  std::vector<PlaceDoubt> doubts(inventory.files.size());
   parallel_for(inventory.files.size(),
-               [&](std::size_t i) { why[i] = doubt(inventory.files[i], read); });
-  for (std::size_t i = 0; i < why.size(); ++i)
-    if (!why[i].empty())
-      inventory.failures.push_back(
-          {inventory.files[i].path, why[i] + "; it is taken for one building: --scene scene takes "
-                                             "it apart, --scene buildings says that it is one"});
+               [&](std::size_t i) { doubts[i] = doubt(inventory.files[i], read); });
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    const std::string& path = inventory.files[i].path;
+    const std::string text = doubts[i].why +
+                             "; it is taken for one building: --scene scene takes it apart, "
+                             "--scene buildings says that it is one";
+    if (doubts[i].is_certain)
+      inventory.failures.push_back({path, text});
+    else if (!doubts[i].why.empty())
+      inventory.warnings.push_back(path + ": " + text);
+  }
 }
 
 Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,

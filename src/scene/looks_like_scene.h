@@ -7,9 +7,15 @@
 
 namespace colod {
 
-/// What tells that a mesh is a place with terrain and several buildings, or a piece of one, for a
-/// message; empty: it is a building, drawn, too small to tell, or no mesh. O(cells of its plan).
-std::string looks_like_scene(const Source& source);
+/// For a message: `why` is empty where nothing tells against one building.
+struct PlaceDoubt {
+  std::string why;
+  bool is_certain = false;  ///< several buildings, parts of them, or none: no single one
+};
+
+/// What tells that a mesh is a place with terrain and several buildings, or a piece of one. Nothing
+/// does of what is drawn, less than 5 m wide, or no mesh. O(faces log faces + cells of its plan).
+PlaceDoubt looks_like_scene(const Source& source);
 
 /// Whether its plan is 50 m long: few buildings are.
 bool is_wide(const Source& source);

@@ -144,14 +144,25 @@ constexpr double kLeastEdge = 1e-3;  // metres, seen from above
 namespace colod::parameters::whole_place {
 
 constexpr double kMostCells = 4e6;
-constexpr double kLeastSide = 50;     // metres of the plan: a plot is narrower, or holds one house
-constexpr double kLeastGround = 0.3;  // of the plan
-constexpr double kLeastHouse = 30;    // m²: a garage is no second building
-constexpr int kLeastHouses = 3;       // that stand apart: two may be a house and its barn
-constexpr int kReach = 5;             // cells: 2 m between roofs is no gap
-constexpr double kBareGround = 0.75;  // of the plan, where no building stands
-constexpr double kFilled = 0.8;       // of its box that a tile covers; cut-outs 0.75 at most
-constexpr double kGroundAtRim = 0.2;  // of plan and border: a building without plot has none
-constexpr double kCutOff = 0.02;      // of the border, where a plot has no building at all
+constexpr double kLeastSide = 50;   // metres of the plan: a plot is narrower, or holds one house
+constexpr double kLeastTile = 18;   // metres, cut straight: a shed with its plot is smaller
+constexpr double kLeastPiece = 5;   // metres, cut straight, for a doubt: a row house, or a remnant
+constexpr double kStraight = 0.02;  // metres from the plane of a side: coordinates are rounded
+constexpr double kStraightShare = 1e-3;  // of the plan, likewise
+constexpr double kSpanned = 0.9;         // of a side that the border spans
+constexpr int kStraightSides = 2;        // of four: at a scene's edge two may be ragged
+constexpr double kLeastGround = 0.3;     // of the plan
+constexpr double kLeastHouse = 30;       // m²: a garage is no second building
+constexpr int kLeastHouses = 3;          // that stand apart: two may be a house and its barn
+constexpr int kReach = 5;                // cells: 2 m between roofs is no gap
+constexpr int kLeastHousesOfTile = 2;    // where it is cut straight
+constexpr double kBareGround = 0.75;     // of the plan, where no building stands
+constexpr double kBareBuilt = 0.03;      // of a tile: the largest plots are 20 times a house
+constexpr double kAtTop = 1;             // metres: the foot of a wall lies lower
+constexpr double kMostAtTop = 0.5;       // of a tile's border
+constexpr double kFilled = 0.8;          // of its box that a tile covers; cut-outs 0.75 at most
+constexpr double kGroundAtRim = 0.05;    // of plan and border: a building without plot has none
+constexpr double kLeastCut = 4;          // metres of a house on one side's border: more than a tree
+constexpr double kCutOff = 0.2;          // of its outline, on all sides
 
 }  // namespace colod::parameters::whole_place

@@ -377,13 +377,13 @@ TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain wit
   const std::string kind = GENERATE("cut", "bare", "whole", "on its side", "b3dm");
   INFO(kind);
   std::vector<Box> houses = {{{-5, 20, 0}, {12, 34, 6}}, {{40, 30, 0}, {52, 44, 7}}};
-  if (kind != "cut") houses.erase(houses.begin());
+  houses.erase(kind == "cut" ? houses.begin() + 1 : houses.begin());
   if (kind == "bare" || kind == "on its side") houses.clear();
   Mesh place = terrain_with_boxes(70, 1, houses);
   for (Vec3& p : place.vertices)  // as what was measured: nothing quite level or upright
     p += Vec3(0.01 * p.z(), 0.013 * p.z(), 0.02 * p.x() + 0.1 * std::sin(p.y() / 5));
-  std::string mesh, says = "its border cuts through terrain and buildings";
-  if (kind == "bare" || kind == "on its side") says = "no building stands on it";
+  std::string mesh, says = "its border cuts through buildings";
+  if (kind == "bare" || kind == "on its side") says = "looks like a piece of terrain";
   if (kind == "b3dm") {
     mesh = folder.write("place.b3dm", b3dm_of(glb_of(y_up(place))));
     says = "is a tile of a scene by its format";
