@@ -17,9 +17,10 @@ function(colod_precompiled name)
 endfunction()
 
 # The room of the current folder: a static library of its sources. DOORS names the headers that others may include (else <room>.h
-# alone; tests/doors.test.cpp sees to it), LINK what they need with them, PRIVATE what stays behind the doors.
+# alone; tests/doors.test.cpp sees to it), LINK what they need with them, PRIVATE what stays behind the doors, TOGETHER
+# the sources that no file-local name stands twice in: ALL, or some.
 function(colod_room name)
-  cmake_parse_arguments(ARG "" "" "DOORS;LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DOORS;LINK;PRIVATE;TOGETHER" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   add_library(colod_${name} STATIC ${sources})
   target_include_directories(colod_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
@@ -30,6 +31,17 @@ function(colod_room name)
     target_precompile_headers(colod_${name} REUSE_FROM colod_precompiled)
   endif()
   colod_part(colod_${name})
+  colod_together(colod_${name} ${ARG_TOGETHER})
+endfunction()
+
+# Compiles these sources of a target in one go, or ALL in batches, so that what they include is read and instantiated once.
+function(colod_together target)
+  if("${ARGN}" STREQUAL "ALL")
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${COLOD_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  elseif(ARGN)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${COLOD_UNITY} UNITY_BUILD_MODE GROUP)
+    set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP together)
+  endif()
 endfunction()
 
 # A static library that the shared one is made of: it can be moved, and shows nothing of itself.

@@ -40,7 +40,6 @@ SizedPool::SizedPool(std::uint64_t street) {
   Random r(street * 6271 + 29);
   for (int i = 0; i < kSizes; ++i) {
     const std::string size = kSizeNames[i];
-    const auto any = [&] { return r.pick(kSizes); };
     const int other = (i + 1) % kSizes, last = (i + 2) % kSizes;  // deep ones are not the wide ones
     windows.push_back({"window" + size, sized(r, 0.6, 3.0, i), sized(r, 0.7, 2.2, i),
                        sized(r, 0.12, 0.55, other), i, r.chance(0.5), false});

@@ -17,8 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFinestShare = 0.3;  // of the bound
-constexpr double kFall = 0.999;       // from one level's screen size to the next
+constexpr double kFall = 0.999;  // from one level's screen size to the next
 
 /// Finest first.
 std::vector<const ExportLevel*> levels_of(const ExportBuilding& building) {

@@ -15,8 +15,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFinestShare = 0.3;  // of the bound: a rounding that shows only close by
-
 struct Level {
   const ExportLevel* level;
   QuantizationGrid grid;

@@ -22,11 +22,6 @@ enum ComponentType { kByte = 5120, kUnsignedShort = 5123, kUnsignedInt = 5125, k
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr std::uint32_t kMaxShort = 65535;
 
-template <typename T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);  // hosts are little endian
-}
-
 void pad(std::string& bytes, std::size_t multiple, char with) {
   while (bytes.size() % multiple != 0) bytes += with;
 }

@@ -11,11 +11,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-template <typename T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 /// File names may be in any encoding, strings of a property table only in UTF-8.
 std::string as_utf8(const std::string& text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "exporters/gltf/gltf.h"
+#include "tile_json.h"
 
 namespace colod {
 
@@ -15,8 +16,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kRise = 1.01;        // a parent's error is at least this times its children's
-constexpr double kLeastError = 1e-3;  // metres; of a tile that has children
 constexpr int kUntextured = -1;
 
 /// The axis, with its sign, that a normal is nearest to.
@@ -102,11 +101,6 @@ std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& 
   document.json["nodes"].push_back(
       {{"name", name}, {"mesh", 0}, {"extras", {{"class", "context"}}}});
   return finish_glb(std::move(document));
-}
-
-Json box_json(const Box& box) {
-  const Vec3 c = box.center(), h = 0.5 * box.size();
-  return {{"box", {c.x(), c.y(), c.z(), h.x(), 0, 0, 0, h.y(), 0, 0, 0, h.z()}}};
 }
 
 }  // namespace

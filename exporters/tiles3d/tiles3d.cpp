@@ -16,6 +16,7 @@
 #include "exporters/gltf/metadata.h"
 #include "frame.h"
 #include "looks.h"
+#include "tile_json.h"
 #include "tree.h"
 
 namespace colod {
@@ -24,9 +25,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kRise = 1.01;          // a parent's error is at least this times its children's
-constexpr double kLeastError = 1e-3;    // metres; of a tile that is finer than its errors tell
-constexpr double kFinestShare = 0.3;    // of the bound: a rounding that shows only close by
 constexpr double kStandInShare = 0.02;  // of the least error of a tile's stand-ins
 constexpr double kFarShare = 0.05;      // of the finest tiles' bytes, at the root
 constexpr std::size_t kMostNames = 4;   // of buildings behind one stand-in, in its name
@@ -224,11 +222,6 @@ void list_contents(Scene& scene, const PlannedTile& tile, std::size_t frame, std
   }
   scene.contents.push_back({&tile, frame, folder, {}, {}});
   for (const PlannedTile& child : tile.children) list_contents(scene, child, frame, folder);
-}
-
-Json box_json(const Box& box) {
-  const Vec3 c = box.center(), h = 0.5 * box.size();
-  return {{"box", {c.x(), c.y(), c.z(), h.x(), 0, 0, 0, h.y(), 0, 0, 0, h.z()}}};
 }
 
 Json start_tileset(const Scene& scene, const TileFrame& frame, Tile root) {

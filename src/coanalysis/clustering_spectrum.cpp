@@ -29,7 +29,7 @@ namespace colod {
 namespace {
 
 constexpr int kAllEigenvalues = 400, kDense = 3000, kNeighbours = 50;
-constexpr int kReported = 10, kRestarts = 300;
+constexpr int kReported = 10, kSolverRestarts = 300;
 constexpr double kConverged = 1e-11;
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -97,7 +97,7 @@ Spectrum lanczos(Product product, Eigen::Index n, int k, std::uint64_t seed) {
   Eigen::VectorXd first(n);
   for (double& x : first) x = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
   solver.init(first.data());
-  solver.compute(Spectra::SortRule::LargestAlge, kRestarts, kConverged);
+  solver.compute(Spectra::SortRule::LargestAlge, kSolverRestarts, kConverged);
   if (solver.info() != Spectra::CompInfo::Successful) return {};
   return spectrum_of(solver.eigenvalues(), solver.eigenvectors(), k);
 }

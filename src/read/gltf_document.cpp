@@ -94,11 +94,11 @@ struct Chunks {
 /// KHR_binary_glTF of glTF 1.0: a header of 20 bytes, JSON, and the buffer.
 Chunks take_old_apart(const std::string& path, std::string_view bytes, std::size_t all,
                       std::size_t json) {
-  constexpr std::size_t kHeader = 20;
-  if (all > bytes.size() || all < kHeader || json > all - kHeader)
+  constexpr std::size_t header = 20;
+  if (all > bytes.size() || all < header || json > all - header)
     fail(path, "truncated: the header says " + std::to_string(all) + " bytes, the file has " +
                    std::to_string(bytes.size()));
-  return {bytes.substr(kHeader, json), bytes.substr(kHeader + json, all - kHeader - json)};
+  return {bytes.substr(header, json), bytes.substr(header + json, all - header - json)};
 }
 
 Chunks take_apart(const std::string& path, std::string_view bytes) {

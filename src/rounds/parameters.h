@@ -34,8 +34,8 @@ constexpr double kSameStretch = 0.002;     // between two stretches
 
 namespace colod::parameters::round_layers {
 
-constexpr double kSameLength = 2.5;    // rows of a run differ by less: a drum is no row of its dome
-constexpr double kLeastBend = 0.02;    // radians: what files with mm do not turn by chance
-constexpr double kHardlyFewer = 0.75;  // of the sides: then all stay
+constexpr double kSameLength = 2.5;  // rows of a run differ by less: a drum is no row of its dome
+constexpr double kLeastTurn = 0.02;  // radians: what files with mm do not turn by chance
+constexpr double kHardlyFewerSides = 0.75;  // of the sides: then all stay
 
 }  // namespace colod::parameters::round_layers

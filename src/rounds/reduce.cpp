@@ -33,7 +33,7 @@ double turn_between(const RoundShape::Row& a, const RoundShape::Row& b) {
 double bend_before(const std::vector<RoundShape::Row>& rows, int r) {
   const Vec2 a = rows[r - 1].to - rows[r - 1].from, b = rows[r].to - rows[r].from;
   const double bend = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-  return std::abs(bend) < kLeastBend ? 0 : bend;
+  return std::abs(bend) < kLeastTurn ? 0 : bend;
 }
 
 std::vector<Run> find_runs(const std::vector<RoundShape::Row>& rows) {
@@ -68,7 +68,7 @@ int count_chords(const std::vector<RoundShape::Row>& rows, const Run& run, doubl
   total *= static_cast<double>(n) / (n - 1);   // half a turn at both ends
   const int least = total > turn / 2 ? 2 : 1;  // one alone would cut a bulb off
   const int chords = std::max(least, static_cast<int>(std::ceil(total / turn - 0.1)));
-  return chords > kHardlyFewer * n ? n : chords;
+  return chords > kHardlyFewerSides * n ? n : chords;
 }
 
 Vec2 point_at(const std::vector<RoundShape::Row>& rows, const Run& run, double t) {
@@ -86,7 +86,7 @@ double divide_columns(const RoundShape& shape, double turn, RoundShape& result,
   const double whole = shape.columns * shape.step;
   int count = std::max(shape.is_closed ? 4 : 2, static_cast<int>(std::lround(whole / turn)));
   if (shape.is_closed) count += count % 2;  // inner walls face a column
-  if (count > kHardlyFewer * shape.columns) return 1;
+  if (count > kHardlyFewerSides * shape.columns) return 1;
   result.columns = count;
   result.step = whole / count;
   if (!shape.is_closed) {

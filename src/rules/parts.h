@@ -1,9 +1,13 @@
 // Inside room `rules`: the table's parts, a room or two each.
 #pragma once
 
+#include <numbers>
+
 #include "rules.h"
 
 namespace colod::rules {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  // of a radian
 
 std::vector<RuleInfo> source_rules();      ///< scene, planes' input
 std::vector<RuleInfo> relief_rules();      ///< melted meshes

@@ -1,6 +1,5 @@
 // The rows of growing planes and of making them regular.
 #include <cmath>
-#include <numbers>
 
 #include "parts.h"
 #include "planes/parameters.h"
@@ -11,7 +10,6 @@ namespace {
 
 using namespace parameters::planes;
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::string_view kRightAngles =
     "planes/planes: a noisy corner of two walls gives two upright, orthogonal planes that meet";
 

@@ -1,5 +1,4 @@
 // The rows of what is parted from a source before planes are sought.
-#include <numbers>
 
 #include "core/drawn.h"
 #include "parts.h"
@@ -11,8 +10,6 @@ namespace colod::rules {
 namespace {
 
 using namespace parameters;
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 RuleInfo ground_rule() {
   return {

@@ -13,9 +13,9 @@
 namespace colod {
 namespace {
 
-constexpr int kFormat = 0x434c4401;  // PRAGMA user_version, far from those of scene files
+constexpr int kShelfFormat = 0x434c4401;  // PRAGMA user_version, far from those of scene files
 
-constexpr const char* kSchema =
+constexpr const char* kShelfSchema =
     "CREATE TABLE piece(name TEXT NOT NULL, part TEXT NOT NULL, bytes BLOB NOT NULL, "
     "PRIMARY KEY(name, part))";
 
@@ -27,7 +27,7 @@ struct Shelf::Impl : Database {
   /// A view or a trigger, which a file may have, would run when it is read.
   bool has_own_schema() const {
     Statement s = read("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL");
-    return s.step() && s.text() == kSchema && !s.step();
+    return s.step() && s.text() == kShelfSchema && !s.step();
   }
   /// What is no database at all is something else.
   Content content() const try {
@@ -35,7 +35,7 @@ struct Shelf::Impl : Database {
     Statement version = read("PRAGMA user_version");
     version.step();
     const std::int64_t found = version.integer();
-    if (found == kFormat && has_own_schema()) return Content::kShelf;
+    if (found == kShelfFormat && has_own_schema()) return Content::kShelf;
     Statement tables = read("SELECT 1 FROM sqlite_master");
     return found == 0 && !tables.step() ? Content::kNothing : Content::kOther;
   } catch (const Error&) {
@@ -60,8 +60,9 @@ Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
       break;
   }
   impl_->transaction([&] {
-    impl_->execute(kSchema, Stage::kOutput);
-    impl_->execute(("PRAGMA user_version = " + std::to_string(kFormat)).c_str(), Stage::kOutput);
+    impl_->execute(kShelfSchema, Stage::kOutput);
+    impl_->execute(("PRAGMA user_version = " + std::to_string(kShelfFormat)).c_str(),
+                   Stage::kOutput);
   });
 }
 
