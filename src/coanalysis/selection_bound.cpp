@@ -1,8 +1,8 @@
 // Based on: Geoffrion, "Lagrangean relaxation for integer programming", 1974; Held, Wolfe, Crowder,
 // "Validation of subgradient optimization", 1974 (Polyak's step).
 //
-// The bound. With w_k the item's high weight, s_tq = sim(t, q), q_k the item's prototype and i(k)
-// its block, layer 0 is
+// The bound. With w_k the item's high weight, s_tq = sim(t, q) at most, q_k the item's prototype
+// and i(k) its block, layer 0 is
 //   max Σ_k gain_k x_k − loss(x) + Σ_k w_k Σ_{j≠i(k)} Σ_{t∈j} s_{t q_k} y_kt
 //   s.t. y_kt ≤ x_t (1),   Σ_{t∈j} y_kt ≤ x_k for every other block j,   y ≥ 0,
 //        loss_i ≤ capacity_i

@@ -178,10 +178,8 @@ const float* Model::rows_high(const Block& block, std::vector<float>& room) cons
   const std::uint16_t* coarse =
       coarse_sim.data() + static_cast<std::size_t>(block.first) * prototypes;
   room.resize(static_cast<std::size_t>(block.count) * prototypes);
-  float* row = room.data();
-  for (int t = 0; t < block.count; ++t, row += prototypes, coarse += prototypes)
-    for (std::size_t q = 0; q < prototypes; ++q)
-      row[q] = std::min(1.0f, reach[q] * (kSimUnit * static_cast<float>(coarse[q] + 1)));
+  for (std::size_t i = 0; i < room.size(); ++i)
+    room[i] = kSimUnit * static_cast<float>(coarse[i] + 1);
   return room.data();
 }
 

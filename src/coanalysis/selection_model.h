@@ -55,8 +55,6 @@ struct Model {
   bool is_exact = true;    ///< item k is prototype k; a block's similarities to itself are 0
   std::vector<float> sim;  ///< exact: an item a row, a prototype a column
   std::vector<std::uint16_t> coarse_sim;  ///< else: the same in units of kSimUnit, rounded down
-  std::vector<float> reach;  ///< not exact, per prototype: what a similarity is multiplied by, and
-                             ///< cut off at 1, for the bound; ≥ 1, and weight_high counts on it
 
   int size() const { return static_cast<int>(items.size()); }
   /// Similarities of a block's items to all prototypes, an item a row, at least and at most; `room`
@@ -69,8 +67,8 @@ constexpr float kSimUnit = 1.0f / 65536;
 
 Model build_model(const std::vector<SelectionBuilding>& buildings, const SelectionOptions& options);
 
-/// Gives the items prototypes, at most `most` of them, and fills Model::coarse_sim and reach;
-/// divides and multiplies the weights by the spreads.
+/// Gives the items prototypes, at most `most` of them, and fills Model::coarse_sim; divides and
+/// multiplies the weights by the spreads.
 void share_prototypes(const std::vector<SelectionBuilding>& buildings, double eta, int most,
                       Model& model);
 

@@ -39,8 +39,6 @@ constexpr int kSample = 4096;  // items from which prototypes are found
 constexpr int kLloydRounds = 4;
 constexpr double kLeastEigenvalue = 1e-9;  // m², for logarithms
 constexpr double kFloatRounding = 1e-6;
-constexpr int kReachSteps = 20;
-constexpr std::size_t kSampledBlocks = 256;  // whose offers decide the reaches
 constexpr double kUnlike = 50;  // ρ of what a prototype must not stand for: it weighs nothing
 
 // ρ of the proof. Not finite where a descriptor is not.
@@ -135,70 +133,6 @@ std::vector<Descriptor> find_centres(const std::vector<const Descriptor*>& items
   return centres;
 }
 
-// Items of one prototype: how much each asks for, and how far it is from it.
-struct Asker {
-  double weight, rho;
-};
-
-// What the bound may count for an item is min(1, sim(q, t) · e^ρ_k), no more. In a form that the
-// items of a prototype share: with R ≥ 0 that is at most e^max(0, ρ_k − R) · min(1, e^R · sim(q,
-// t)). Where a building has something alike for nearly everyone, the cut at 1 gains more than the
-// near items lose by an R that is not theirs.
-double cost_of_reach(const std::vector<Asker>& askers, const std::vector<float>& offers, double r) {
-  double weights = 0, sum = 0;
-  for (const Asker& a : askers) weights += a.weight * std::exp(std::max(0.0, a.rho - r));
-  for (const float offer : offers) sum += std::min(1.0, offer * std::exp(r));
-  return weights * sum;
-}
-
-// The R of the least cost among some between 0 and the farthest item's ρ.
-double choose_reach(const std::vector<Asker>& askers, const std::vector<float>& offers) {
-  double farthest = 0, best = 0, least = cost_of_reach(askers, offers, 0);
-  for (const Asker& a : askers)
-    if (a.rho < kUnlike) farthest = std::max(farthest, a.rho);
-  for (int i = 1; i <= kReachSteps; ++i) {
-    const double r = farthest * i / kReachSteps;
-    if (const double cost = cost_of_reach(askers, offers, r); cost < least) best = r, least = cost;
-  }
-  return best;
-}
-
-// What some blocks have at most for each prototype: [prototype][block].
-std::vector<std::vector<float>> sample_offers(const Model& model) {
-  const std::size_t count = std::min<std::size_t>(model.blocks.size(), kSampledBlocks);
-  std::vector<std::vector<float>> offers(model.prototypes, std::vector<float>(count, 0.0f));
-  std::vector<float> room;
-  for (std::size_t j = 0; j < count; ++j) {
-    const Block& block = model.blocks[j * model.blocks.size() / count];
-    const float* sim = model.rows_high(block, room);
-    for (int t = 0; t < block.count; ++t, sim += model.prototypes) {
-      for (std::size_t q = 0; q < model.prototypes; ++q)
-        offers[q][j] = std::max(offers[q][j], sim[q]);
-    }
-  }
-  return offers;
-}
-
-// `rho` per item; fills reach and multiplies the high weights by what it leaves.
-void set_reach(const std::vector<double>& rho, Model& model) {
-  std::vector<std::vector<Asker>> askers(model.prototypes);
-  for (int k = 0; k < model.size(); ++k)
-    if (model.items[k].weight_high > 0)
-      askers[model.items[k].prototype].push_back({model.items[k].weight_high, rho[k]});
-  model.reach.assign(model.prototypes, 1.0f);
-  const auto offers = sample_offers(model);
-  std::vector<double> exponents(model.prototypes);
-  parallel_for(model.prototypes, [&](std::size_t q) {
-    exponents[q] = choose_reach(askers[q], offers[q]);
-    model.reach[q] = static_cast<float>(std::exp(exponents[q]) * (1 + kFloatRounding));
-  });
-  for (int k = 0; k < model.size(); ++k) {
-    Item& item = model.items[k];
-    item.weight_high *=
-        std::exp(std::max(0.0, rho[k] - exponents[item.prototype])) * (1 + kFloatRounding);
-  }
-}
-
 }  // namespace
 
 void share_prototypes(const std::vector<SelectionBuilding>& buildings, double eta, int most,
@@ -213,7 +147,6 @@ void share_prototypes(const std::vector<SelectionBuilding>& buildings, double et
   model.is_exact = false;
   model.prototypes = centres.size();
   model.coarse_sim.assign(all.size() * centres.size(), 0);
-  std::vector<double> rho(all.size(), 0.0);
   parallel_for(
       all.size(),
       [&](std::size_t k) {
@@ -224,15 +157,14 @@ void share_prototypes(const std::vector<SelectionBuilding>& buildings, double et
           return;
         }
         const Nearest nearest = nearest_centre(*all[k], centres, eta);
-        rho[k] = nearest.rho;
+        const double spread = std::exp(nearest.rho) * (1 + kFloatRounding);
         item.prototype = nearest.centre;
-        item.weight /= std::exp(nearest.rho) * (1 + kFloatRounding);
+        item.weight /= spread, item.weight_high *= spread;
         for (std::size_t q = 0; q < centres.size(); ++q)
           model.coarse_sim[k * centres.size() + q] = static_cast<std::uint16_t>(
               std::min(65535.0, segment_similarity(*all[k], centres[q], eta) / kSimUnit));
       },
       16);
-  set_reach(rho, model);
 }
 
 }  // namespace colod::selection
