@@ -36,11 +36,18 @@ double cpu_seconds(const rusage& usage) {
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
+std::int64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
 nlohmann::ordered_json run(const Settings& settings) {
   const auto scene = bench::generated_scene(settings.buildings, settings.segments, settings.seed);
   const auto start = std::chrono::steady_clock::now();
   const Selection selection = select_layer0(scene, settings.selection);
   const double selection_seconds = seconds_since(start);
+  const std::int64_t selection_memory = peak_memory();
   std::vector<Descriptor> rest;
   for (std::size_t i = 0; i < scene.size(); ++i)
     for (std::size_t s = 0; s < scene[i].segments.size(); ++s)
@@ -59,7 +66,8 @@ nlohmann::ordered_json run(const Settings& settings) {
           {"bound", selection.bound},
           {"gap", selection.gap},
           {"starts", selection.starts},
-          {"peak_memory_bytes", static_cast<std::int64_t>(usage.ru_maxrss) * 1024},
+          {"peak_memory_bytes", peak_memory()},
+          {"selection_peak_memory_bytes", selection_memory},
           {"cpu_seconds", cpu_seconds(usage)},
           {"status", to_string(selection.status)},
           {"is_exact", selection.is_exact},

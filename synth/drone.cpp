@@ -41,18 +41,18 @@ Ground ground_below(const SynthBuilding& building) {
 }
 
 /// Faces of other buildings that lie about this one.
-void add_neighbours(const std::vector<Mesh>& models, std::size_t own, double around, Mesh& soup) {
-  Box box = bounding_box(models[own].vertices);
+void add_neighbours(const std::vector<NumberedModel>& models, int own, Box box, double around,
+                    Mesh& soup) {
   box.min -= Vec3::Constant(around), box.max += Vec3::Constant(around);
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (i == own) continue;
-    for (const Face& f : models[i].faces) {
+  for (const auto& [number, model] : models) {
+    if (number == own) continue;
+    for (const Face& f : model.faces) {
       Box face;
-      for (int v : f) face.extend(models[i].vertices[v]);
+      for (int v : f) face.extend(model.vertices[v]);
       if ((face.min.array() > box.max.array()).any() || (face.max.array() < box.min.array()).any())
         continue;
       const int base = static_cast<int>(soup.vertices.size());
-      for (int v : f) soup.vertices.push_back(models[i].vertices[v]);
+      for (int v : f) soup.vertices.push_back(model.vertices[v]);
       soup.faces.push_back({base, base + 1, base + 2});
     }
   }
@@ -179,22 +179,23 @@ Mesh make_surface(const Mesh& soup, const RayScene& model, const Ground& ground,
 /// and an even one.
 bool gives_height_field(std::uint64_t seed) { return seed / 2 % 2 == 1; }
 
-void fly_over_building(SynthBuilding& building, const std::vector<Mesh>& models, std::size_t own,
+void fly_over_building(SynthBuilding& building, int own, const std::vector<NumberedModel>& around,
                        const SynthOptions& options) {
   const std::uint64_t seed = (options.seed * 0x9E3779B97F4A7C15ull + own) ^ 0xd1b54a32d192ed03ull;
   Random random(seed);
   const Flight flight = draw_flight(random, options.scan_edge, gives_height_field(options.seed));
   const Ground ground = ground_below(building);
-  const Mesh& model = models[own];
+  const Mesh model = building.source.mesh;
+  const Box box = bounding_box(model.vertices);
   const RayScene scene(model);
   Mesh soup = make_soup(model, building.source.face_object, ground, flight, random);
-  add_neighbours(models, own, flight.skirt, soup);
+  add_neighbours(around, own, box, flight.skirt, soup);
   Mesh mesh = flight.is_height_field ? make_field(soup, flight, random)
                                      : make_surface(soup, scene, ground, flight);
   bulge(mesh, flight, seed);
   cut_skirt(mesh, model, flight.skirt);
   if (!flight.is_height_field) mesh = thin_to_edge(mesh, flight.edge);
-  cut_missing_sides(mesh, ground, bounding_box(model.vertices), flight);
+  cut_missing_sides(mesh, ground, box, flight);
   tidy(mesh);
   building.source.face_object = name_faces(mesh, building, scene, ground);
   building.source.mesh = std::move(mesh);
@@ -210,7 +211,7 @@ Flight draw_flight(Random& random, double edge, bool is_height_field) {
   flight.melt = std::max(0.05, edge * random.uniform(0.6, 1.4));
   flight.bulge = random.uniform(0.25, 1.2) * std::clamp(share * edge, 0.01, 0.3);
   flight.jitter = 0.02 * std::min(1.0, edge);
-  flight.skirt = random.uniform(1, 2.2);
+  flight.skirt = random.uniform(1, kMostSkirt);
   for (double& lean : flight.lean)
     lean = is_height_field ? random.uniform(0, 0.05) : random.uniform(0.05, 0.4);
   for (int i = random.chance(0.35) ? 1 + random.pick(2) : 0; i > 0; --i) {
@@ -222,11 +223,11 @@ Flight draw_flight(Random& random, double edge, bool is_height_field) {
   return flight;
 }
 
-void fly_over(std::vector<SynthBuilding>& buildings, const SynthOptions& options) {
-  std::vector<Mesh> models;
-  for (const SynthBuilding& b : buildings) models.push_back(b.source.mesh);
-  parallel_for(buildings.size(),
-               [&](std::size_t i) { fly_over_building(buildings[i], models, i, options); });
+void fly_over(std::vector<SynthBuilding>& buildings, int number,
+              const std::vector<NumberedModel>& around, const SynthOptions& options) {
+  parallel_for(buildings.size(), [&](std::size_t i) {
+    fly_over_building(buildings[i], number + static_cast<int>(i), around, options);
+  });
 }
 
 }  // namespace colod::synth

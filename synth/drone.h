@@ -42,7 +42,16 @@ void bulge(Mesh& mesh, const Flight& flight, std::uint64_t seed);
 Mesh thin_to_edge(const Mesh& mesh, double edge);
 double median_edge(const Mesh& mesh);
 
-/// Replaces every building's clean model by what a drone's pictures give of it.
-void fly_over(std::vector<SynthBuilding>& buildings, const SynthOptions& options);
+constexpr double kMostSkirt = 2.2;  ///< metres
+
+/// A clean building's mesh.
+struct NumberedModel {
+  int number;
+  Mesh mesh;
+};
+/// Replaces the buildings' clean models by what a drone's pictures give of them. `number`: of the
+/// first one. `around`, rising: all that stands within kMostSkirt of their boxes, and themselves.
+void fly_over(std::vector<SynthBuilding>& buildings, int number,
+              const std::vector<NumberedModel>& around, const SynthOptions& options);
 
 }  // namespace colod::synth

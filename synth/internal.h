@@ -18,9 +18,15 @@ struct Sample {
 /// holes closed, small pieces dropped. No side is longer than `longest_edge`, but for closed holes.
 std::vector<Face> reconstruct(const std::vector<Sample>& samples, double longest_edge);
 
-/// Replaces every building's clean model by a simulated scan of it among the others.
-/// `to_street[i]`: the horizontal unit direction in which building i looks.
-void scan_neighbourhood(std::vector<SynthBuilding>& buildings, const std::vector<Vec3>& to_street,
-                        const SynthOptions& options);
+/// Where a building, or a camera that may see it, is. `to_street`: the horizontal unit direction in
+/// which it looks.
+Box scan_reach(const Box& building, const Vec3& to_street);
+
+/// Replaces the buildings' clean models by simulated scans of them. `number`: of the first one.
+/// `around`: the models of all that stands in their scan_reach, their own among them. `whole`: the
+/// neighbourhood's box. `to_street` per building.
+void scan_buildings(std::vector<SynthBuilding>& buildings, int number, const Mesh& around,
+                    const Box& whole, const std::vector<Vec3>& to_street,
+                    const SynthOptions& options);
 
 }  // namespace colod::synth

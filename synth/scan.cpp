@@ -291,20 +291,19 @@ void scan_building(SynthBuilding& building, const Vec3& to_street, const RayScen
 
 }  // namespace
 
-void scan_neighbourhood(std::vector<SynthBuilding>& buildings, const std::vector<Vec3>& to_street,
-                        const SynthOptions& options) {
-  Mesh all;
-  for (const SynthBuilding& b : buildings) {
-    const int base = static_cast<int>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), b.source.mesh.vertices.begin(),
-                        b.source.mesh.vertices.end());
-    for (const Face& f : b.source.mesh.faces)
-      all.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
-  }
-  const RayScene scene(all);
+Box scan_reach(const Box& building, const Vec3& to_street) {
+  Box reach = building;
+  for (const Vec3& camera : place_cameras(building, to_street)) reach.extend(camera);
+  return reach;
+}
+
+void scan_buildings(std::vector<SynthBuilding>& buildings, int number, const Mesh& around,
+                    const Box& whole, const std::vector<Vec3>& to_street,
+                    const SynthOptions& options) {
+  const RayScene scene(around, whole);
   parallel_for(buildings.size(), [&](std::size_t i) {
     scan_building(buildings[i], to_street[i], scene, options,
-                  {options.seed * 0x9E3779B97F4A7C15ull + i});
+                  {options.seed * 0x9E3779B97F4A7C15ull + number + i});
   });
 }
 

@@ -27,6 +27,7 @@ using namespace synth;
 
 constexpr double kLargeRelief = 0.4;  // m; see SynthPart::level
 constexpr double kLargeVolume = 1.5;  // m³
+constexpr int kBatch = 16;            // houses at a time
 constexpr int kChurchAt = 6;          // one church, in neighbourhoods that have as many buildings
 
 std::uint64_t building_seed(std::uint64_t seed, int index) {
@@ -67,14 +68,20 @@ struct Site {
   }
 };
 
-bool is_row_house(const House& house) { return house.style == "row_house"; }
+/// What of a house decides where it and the others stand.
+struct Lot {
+  std::string style;
+  double width, depth, before, beside;  ///< as in House
+};
+
+bool is_row_house(const Lot& lot) { return lot.style == "row_house"; }
 
 /// Four frontages, both sides of two streets that drift apart. The houses of one are placed side by
 /// side; only row houses touch.
-std::vector<Site> place_houses(const std::vector<House>& houses, std::uint64_t seed) {
+std::vector<Site> place_houses(const std::vector<Lot>& houses, std::uint64_t seed) {
   constexpr double kStreetYaw[2] = {-0.07, 0.09};  // rad
   double deepest = 0;
-  for (const House& h : houses) deepest = std::max(deepest, h.depth + 2 * h.before);
+  for (const Lot& h : houses) deepest = std::max(deepest, h.depth + 2 * h.before);
   const Vec3 street_start[2] = {{0, 0, 0}, {6, std::max(78.0, 30 + 2 * deepest), 0}};
   constexpr double kHalfStreet = 5.5, kPartyGap = 0.02;
   Random random(seed * 101 + 3);
@@ -139,20 +146,105 @@ SynthBuilding finish(const House& house, const Site& site, int index, SynthSizes
   return building;
 }
 
-std::vector<House> build_houses(const SynthOptions& options) {
-  const Catalogue catalogue(options.seed);
-  const std::vector<int> styles = choose_styles(options);
-  std::vector<House> houses;
-  for (int i = 0; i < options.buildings; ++i) {
-    const std::uint64_t seed = building_seed(options.seed, i);
-    if (options.is_varied)
-      houses.push_back(make_varied_house(i, seed, options));
-    else if (options.sizes == SynthSizes::kMixed)
-      houses.push_back(make_mixed_house(i, styles[i], options.seed, seed));
-    else
-      houses.push_back(make_house(styles[i], seed, catalogue));
+bool overlap(const Box& a, const Box& b) {
+  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+}
+
+/// Where all houses stand; the houses themselves are made when they are asked for.
+class Street {
+ public:
+  explicit Street(const SynthOptions& options)
+      : options_(options), catalogue_(options.seed), styles_(choose_styles(options)) {
+    std::vector<Lot> lots(styles_.size());
+    parallel_for(lots.size(), [&](std::size_t i) {
+      const House house = make(static_cast<int>(i));
+      lots[i] = {house.style, house.width, house.depth, house.before, house.beside};
+    });
+    sites_ = place_houses(lots, options.seed);
+    if (!options.is_scan && !options.is_drone) return;
+    boxes_.resize(lots.size());
+    parallel_for(lots.size(), [&](std::size_t i) {
+      boxes_[i] = bounding_box(clean(static_cast<int>(i)).source.mesh.vertices);
+    });
+    for (const Box& box : boxes_) whole_.extend(box);
   }
-  return houses;
+
+  SynthBatch batch(int first, int count) const {
+    SynthBatch batch;
+    batch.buildings.resize(count);
+    parallel_for(count,
+                 [&](std::size_t i) { batch.buildings[i] = clean(first + static_cast<int>(i)); });
+    if (!options_.is_scan && !options_.is_drone) return batch;
+    batch.clean = batch.buildings;
+    if (options_.is_drone)
+      fly_over(batch.buildings, first, around(first, count), options_);
+    else
+      scan(batch.buildings, first);
+    return batch;
+  }
+
+ private:
+  House make(int i) const {
+    const std::uint64_t seed = building_seed(options_.seed, i);
+    if (options_.is_varied) return make_varied_house(i, seed, options_);
+    if (options_.sizes == SynthSizes::kMixed)
+      return make_mixed_house(i, styles_[i], options_.seed, seed);
+    return make_house(styles_[i], seed, catalogue_);
+  }
+  SynthBuilding clean(int i) const { return finish(make(i), sites_[i], i, options_.sizes); }
+
+  Vec3 to_street(int i) const { return sites_[i].to_world(-Vec3::UnitY()) - sites_[i].origin; }
+
+  /// What may lie between a building and who looks at it.
+  Box reach(int i) const {
+    if (!options_.is_drone) return scan_reach(boxes_[i], to_street(i));
+    return {boxes_[i].min - Vec3::Constant(kMostSkirt), boxes_[i].max + Vec3::Constant(kMostSkirt)};
+  }
+
+  std::vector<NumberedModel> around(int first, int count) const {
+    std::vector<Box> reaches;
+    for (int i = first; i < first + count; ++i) reaches.push_back(reach(i));
+    std::vector<NumberedModel> models;
+    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i)
+      if (std::any_of(reaches.begin(), reaches.end(),
+                      [&](const Box& r) { return overlap(r, boxes_[i]); }))
+        models.push_back({i, {}});
+    parallel_for(models.size(),
+                 [&](std::size_t i) { models[i].mesh = clean(models[i].number).source.mesh; });
+    return models;
+  }
+
+  void scan(std::vector<SynthBuilding>& buildings, int first) const {
+    const int count = static_cast<int>(buildings.size());
+    std::vector<Vec3> to_streets;
+    for (int i = first; i < first + count; ++i) to_streets.push_back(to_street(i));
+    Mesh all;
+    for (const auto& [number, mesh] : around(first, count)) {
+      const int base = static_cast<int>(all.vertices.size());
+      all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+      for (const Face& f : mesh.faces) all.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
+    }
+    scan_buildings(buildings, first, all, whole_, to_streets, options_);
+  }
+
+  SynthOptions options_;
+  Catalogue catalogue_;
+  std::vector<int> styles_;
+  std::vector<Site> sites_;
+  std::vector<Box> boxes_;  // of scans
+  Box whole_;
+};
+
+void check(const SynthOptions& options) {
+  if (options.buildings < 1) throw Error(Stage::kUsage, "synth", "needs at least one building");
+  if (options.is_varied && options.sizes == SynthSizes::kMixed)
+    throw Error(Stage::kUsage, "synth", "mixed sizes are for streets that are not varied");
+  if ((options.has_slopes || options.plans != SynthPlans::kAny) && !options.is_varied)
+    throw Error(Stage::kUsage, "synth", "sloping ground and plans are of varied streets only");
+  if (!(options.scan_edge > 0))
+    throw Error(Stage::kUsage, "synth", "the length of a scan's edges must be positive");
+  if (!(options.noise >= 0) || !(options.density > 0))
+    throw Error(Stage::kUsage, "synth", "noise must not be negative, density must be positive");
 }
 
 nlohmann::json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -167,32 +259,29 @@ void append(std::string& bytes, const T& value) {
 }  // namespace
 
 std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options) {
-  if (options.buildings < 1) throw Error(Stage::kUsage, "synth", "needs at least one building");
-  if (options.is_varied && options.sizes == SynthSizes::kMixed)
-    throw Error(Stage::kUsage, "synth", "mixed sizes are for streets that are not varied");
-  if ((options.has_slopes || options.plans != SynthPlans::kAny) && !options.is_varied)
-    throw Error(Stage::kUsage, "synth", "sloping ground and plans are of varied streets only");
-  if (!(options.scan_edge > 0))
-    throw Error(Stage::kUsage, "synth", "the length of a scan's edges must be positive");
-  if (!(options.noise >= 0) || !(options.density > 0))
-    throw Error(Stage::kUsage, "synth", "noise must not be negative, density must be positive");
-  const std::vector<House> houses = build_houses(options);
-  const std::vector<Site> sites = place_houses(houses, options.seed);
-  std::vector<SynthBuilding> buildings(houses.size());
-  parallel_for(houses.size(), [&](std::size_t i) {
-    buildings[i] = finish(houses[i], sites[i], static_cast<int>(i), options.sizes);
+  std::vector<SynthBuilding> buildings;
+  stream_neighbourhood(options, [&](const SynthBatch& batch) {
+    buildings.insert(buildings.end(), batch.buildings.begin(), batch.buildings.end());
   });
-  if (options.is_drone) {
-    fly_over(buildings, options);
-  } else if (options.is_scan) {
-    std::vector<Vec3> to_street;
-    for (const Site& s : sites) to_street.push_back(s.to_world(-Vec3::UnitY()) - s.origin);
-    scan_neighbourhood(buildings, to_street, options);
-  }
   return buildings;
 }
 
+void stream_neighbourhood(const SynthOptions& options,
+                          const std::function<void(const SynthBatch&)>& take) {
+  check(options);
+  const Street street(options);
+  for (int first = 0; first < options.buildings; first += kBatch)
+    take(street.batch(first, std::min(kBatch, options.buildings - first)));
+}
+
 std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthOptions& options) {
+  std::string text = truth_before(options);
+  for (std::size_t i = 0; i < buildings.size(); ++i)
+    text += (i > 0 ? ",\n" : "") + truth_entry(buildings[i]);
+  return text + truth_after();
+}
+
+std::string truth_before(const SynthOptions& options) {
   nlohmann::ordered_json root;
   root["options"] = {{"buildings", options.buildings},
                      {"seed", options.seed},
@@ -204,25 +293,30 @@ std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthO
   if (options.is_drone) root["options"]["drone"] = true;
   if (options.is_drone) root["options"]["scan_edge"] = options.scan_edge;
   if (options.has_slopes) root["options"]["slopes"] = true;
-  root["buildings"] = nlohmann::ordered_json::array();
-  for (const SynthBuilding& b : buildings) {
-    nlohmann::ordered_json building;
-    building["name"] = b.source.name;
-    building["style"] = b.style;
-    building["faces"] = b.source.mesh.faces.size();
-    building["parts"] = nlohmann::ordered_json::array();
-    for (const SynthPart& p : b.parts)
-      building["parts"].push_back(
-          {{"type", name_of(p.kind)},
-           {"model", p.model},
-           {"instance", p.instance},
-           {"level", p.level},
-           {"depth", p.depth},
-           {"box", {{"min", to_json(p.box.min)}, {"max", to_json(p.box.max)}}}});
-    root["buildings"].push_back(building);
-  }
-  return root.dump(1) + "\n";
+  const std::string text = root.dump(1);
+  return text.substr(0, text.rfind("\n}")) + ",\n \"buildings\": [\n";
 }
+
+std::string truth_entry(const SynthBuilding& b) {
+  nlohmann::ordered_json building;
+  building["name"] = b.source.name;
+  building["style"] = b.style;
+  building["faces"] = b.source.mesh.faces.size();
+  building["parts"] = nlohmann::ordered_json::array();
+  for (const SynthPart& p : b.parts)
+    building["parts"].push_back(
+        {{"type", name_of(p.kind)},
+         {"model", p.model},
+         {"instance", p.instance},
+         {"level", p.level},
+         {"depth", p.depth},
+         {"box", {{"min", to_json(p.box.min)}, {"max", to_json(p.box.max)}}}});
+  std::string text;
+  for (const char c : "\n" + building.dump(1)) text += c == '\n' ? "\n  " : std::string(1, c);
+  return text.substr(1);
+}
+
+std::string truth_after() { return "\n ]\n}\n"; }
 
 std::string synth_obj(const SynthBuilding& building) {
   const Mesh& mesh = building.source.mesh;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -61,8 +62,24 @@ struct SynthBuilding {
 /// neighbours too.
 std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options = {});
 
+/// Houses whose numbers follow each other.
+struct SynthBatch {
+  std::vector<SynthBuilding> buildings;
+  std::vector<SynthBuilding> clean;  ///< what a scan was made of; else none
+};
+
+/// The same buildings, in order and a few at a time, so that memory does not grow with their
+/// number: houses are made once to place them all and again when it is their, or a scanned
+/// neighbour's, turn.
+void stream_neighbourhood(const SynthOptions& options,
+                          const std::function<void(const SynthBatch&)>& take);
+
 /// The ground-truth file (JSON text), written beside the meshes as truth.json.
 std::string truth_json(const std::vector<SynthBuilding>& buildings, const SynthOptions& options);
+/// The same in pieces: the entries stand between both, separated by ",\n".
+std::string truth_before(const SynthOptions& options);
+std::string truth_entry(const SynthBuilding& building);
+std::string truth_after();
 
 /// A building as a file, in world coordinates. OBJ text has a group `<kind>__<instance>` for each
 /// part; binary PLY has double coordinates and an int face property `object`.

@@ -83,11 +83,7 @@ Digest md5(std::string text) {
   return state;
 }
 
-struct Entry {
-  std::string path;
-  std::uint64_t offset = 0;
-  std::uint32_t crc = 0, size = 0;
-};
+using Entry = ArchiveWriter::Entry;
 
 /// What local and central headers share: flags to the length of the name.
 void put_common(std::string& out, const Entry& e) {
@@ -99,18 +95,6 @@ void put_common(std::string& out, const Entry& e) {
   put(out, e.size);
   put(out, e.size);
   put(out, static_cast<std::uint16_t>(e.path.size()));
-}
-
-void add_file(std::string& out, std::vector<Entry>& entries, const std::string& path,
-              const std::string& bytes) {
-  if (bytes.size() >= k32Bits || path.size() > k16Bits)
-    throw Error(Stage::kOutput, path, "too large for the archive: use --format 3dtiles");
-  entries.push_back({path, out.size(), crc32(bytes), static_cast<std::uint32_t>(bytes.size())});
-  put(out, std::uint32_t{0x04034b50});
-  put(out, kVersion);
-  put_common(out, entries.back());
-  put(out, std::uint16_t{0});
-  out += path + bytes;
 }
 
 void put_central(std::string& out, const Entry& e) {
@@ -129,8 +113,9 @@ void put_central(std::string& out, const Entry& e) {
   put(out, e.offset);
 }
 
-void put_end(std::string& out, std::uint64_t count, std::uint64_t start) {
-  const std::uint64_t end = out.size(), size = end - start;
+/// The central directory lies from `start` to `end`.
+void put_end(std::string& out, std::uint64_t count, std::uint64_t start, std::uint64_t end) {
+  const std::uint64_t size = end - start;
   if (count >= k16Bits || end >= k32Bits) {
     put(out, std::uint32_t{0x06064b50});
     put(out, std::uint64_t{44});
@@ -175,15 +160,43 @@ std::string index_of(const std::vector<Entry>& entries) {
 
 }  // namespace
 
+void ArchiveWriter::put(const std::string& bytes) {
+  append_(bytes);
+  end_ += bytes.size();
+}
+
+void ArchiveWriter::add(const std::string& path, const std::string& bytes) {
+  if (bytes.size() >= k32Bits || path.size() > k16Bits)
+    throw Error(Stage::kOutput, path, "too large for the archive: use --format 3dtiles");
+  entries_.push_back({path, end_, crc32(bytes), static_cast<std::uint32_t>(bytes.size())});
+  std::string header;
+  colod::put(header, std::uint32_t{0x04034b50});
+  colod::put(header, kVersion);
+  put_common(header, entries_.back());
+  colod::put(header, std::uint16_t{0});
+  put(header + path);
+  put(bytes);
+}
+
+void ArchiveWriter::finish() {
+  add("@3dtilesIndex1@", index_of(entries_));
+  const std::uint64_t start = end_;
+  for (const Entry& e : entries_) {
+    std::string central;
+    put_central(central, e);
+    put(central);
+  }
+  std::string end;
+  put_end(end, entries_.size(), start, end_);
+  put(end);
+}
+
 Encoded encode_3tz(const std::vector<Encoded>& files) {
   std::string out;
-  std::vector<Entry> entries;
-  for (const Encoded& file : files) add_file(out, entries, file.path, file.bytes);
-  add_file(out, entries, "@3dtilesIndex1@", index_of(entries));
-  const std::uint64_t start = out.size();
-  for (const Entry& e : entries) put_central(out, e);
-  put_end(out, entries.size(), start);
-  return {"tileset.3tz", std::move(out)};
+  ArchiveWriter archive([&](const std::string& bytes) { out += bytes; });
+  for (const Encoded& file : files) archive.add(file.path, file.bytes);
+  archive.finish();
+  return {kArchiveName, std::move(out)};
 }
 
 }  // namespace colod

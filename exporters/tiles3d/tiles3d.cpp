@@ -9,12 +9,14 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "exporters/gltf/metadata.h"
 #include "frame.h"
+#include "kept.h"
 #include "looks.h"
 #include "tile_json.h"
 #include "tree.h"
@@ -44,7 +46,9 @@ struct Content {
   Encoded file;
   Box box;  // z-up tile space
   double gsd = 0;
-  std::size_t bytes = 0;  // of the file, which may be handed over
+  std::size_t bytes = 0;  // of the file, which may be handed over, or was there before
+
+  std::string below() const { return folder.empty() ? "tiles/" : folder; }
 };
 
 /// A cell whose tiles are all encoded.
@@ -60,7 +64,7 @@ struct Scene {
   const LevelDepot& depot;
   std::vector<TileFrame> frames = {};             // the tileset's, then the cells'
   std::vector<Content> contents = {};             // parents before children
-  std::vector<Encoded> cells = {};                // tilesets of cells
+  std::vector<Encoded> cells = {};                // tilesets of cells, without what was taken
   std::map<std::size_t, Finished> finished = {};  // cells by the place of their first content
 };
 
@@ -177,8 +181,7 @@ void encode_content(const Scene& scene, Content& content) {
   document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
   document.json["nodes"].push_back(node);
   add_features(document, features);
-  const std::string folder = content.folder.empty() ? "tiles/" : content.folder;
-  content.file = {folder + tile.name + ".glb", finish_glb(std::move(document))};
+  content.file.bytes = finish_glb(std::move(document));
   content.bytes = content.file.bytes.size();
   content.box.extend(from_gltf(seen.min));
   content.box.extend(from_gltf(seen.max));
@@ -221,6 +224,7 @@ void list_contents(Scene& scene, const PlannedTile& tile, std::size_t frame, std
     scene.frames.push_back(frame_of(scene, tile));
   }
   scene.contents.push_back({&tile, frame, folder, {}, {}});
+  scene.contents.back().file.path = scene.contents.back().below() + tile.name + ".glb";
   for (const PlannedTile& child : tile.children) list_contents(scene, child, frame, folder);
 }
 
@@ -336,20 +340,63 @@ std::size_t end_of(const Scene& scene, std::size_t first) {
   return end;
 }
 
-/// Per building of a tile.
-std::vector<int> buildings_of(const PlannedTile& tile) {
-  std::vector<int> all;
-  for (const TilePart& part : tile.parts)
-    all.insert(all.end(), part.buildings.begin(), part.buildings.end());
-  return all;
+using Places = std::vector<std::size_t>;  // in the list of contents, rising
+
+std::string key_of(const Scene& scene, const Content& content) {
+  return tile_key(*content.tile, scene.frames[content.frame], scene.buildings, scene.options);
 }
 
-/// Contents [first, end), whose buildings have their levels meanwhile.
-void encode_contents(Scene& scene, std::size_t first, std::size_t end) {
-  const std::vector<int> buildings = buildings_of(*scene.contents[first].tile);
+/// Those of one folder that have to be encoded; of the others is known what they are.
+Places without_kept(Scene& scene, const Places& places) {
+  const KeptTiles* kept = scene.options.kept;
+  if (!kept || places.empty()) return places;
+  const std::string folder = scene.contents[places.front()].below();
+  const auto there = kept->get(folder);
+  Places left;
+  for (const std::size_t i : places) {
+    Content& content = scene.contents[i];
+    const auto found = there.find(content.file.path);
+    if (found == there.end() || found->second.key != key_of(scene, content)) {
+      left.push_back(i);
+      continue;
+    }
+    content.box = found->second.box, content.gsd = found->second.gsd;
+    content.bytes = found->second.bytes;
+  }
+  if (!left.empty()) kept->put(folder, {});
+  return left;
+}
+
+/// All files of one folder have been handed over.
+void keep(const Scene& scene, const Places& places) {
+  const KeptTiles* kept = scene.options.kept;
+  if (!kept || places.empty()) return;
+  std::map<std::string, TileFacts> facts;
+  for (const std::size_t i : places) {
+    const Content& c = scene.contents[i];
+    facts[c.file.path] = {key_of(scene, c), c.box, c.gsd, c.bytes};
+  }
+  kept->put(scene.contents[places.front()].below(), facts);
+}
+
+/// Hands a content's file over, unless it is there already.
+void hand_over(Content& content, const std::function<void(const Encoded&)>& take) {
+  if (content.file.bytes.empty()) return;
+  const Encoded file = std::move(content.file);  // an emptied string keeps its room
+  take(file);
+  content.file = {file.path, {}};
+}
+
+/// Encodes contents, whose buildings have their levels meanwhile.
+void encode_contents(Scene& scene, const Places& places) {
+  std::set<int> shown;
+  for (const std::size_t i : places)
+    for (const TilePart& part : scene.contents[i].tile->parts)
+      if (part.level) shown.insert(part.buildings.begin(), part.buildings.end());
+  const std::vector<int> buildings(shown.begin(), shown.end());
   parallel_for(buildings.size(), [&](std::size_t i) { scene.depot.get(buildings[i]); });
-  parallel_for(end - first,
-               [&](std::size_t i) { encode_content(scene, scene.contents[first + i]); });
+  parallel_for(places.size(),
+               [&](std::size_t i) { encode_content(scene, scene.contents[places[i]]); });
   parallel_for(buildings.size(), [&](std::size_t i) { scene.depot.drop(buildings[i]); });
 }
 
@@ -358,35 +405,39 @@ void encode_contents(Scene& scene, std::size_t first, std::size_t end) {
 void encode_cells(Scene& scene, const std::function<void(const Encoded&)>& take) {
   for (std::size_t first = 1; first < scene.contents.size(); ++first) {
     if (!scene.contents[first].tile->is_cell) continue;
-    const std::size_t end = end_of(scene, first);
-    encode_contents(scene, first, end);
+    Places places(end_of(scene, first) - first);
+    std::iota(places.begin(), places.end(), first);
+    const Places left = without_kept(scene, places);
+    encode_contents(scene, left);
     std::size_t next = first;
     Tile tile = assemble(scene, next);
-    scene.finished[first] = {std::move(tile), end};
+    scene.finished[first] = {std::move(tile), places.back() + 1};
     if (take) {
-      for (std::size_t i = first; i < end; ++i) {
-        const Encoded file = std::move(scene.contents[i].file);  // an emptied string keeps its room
-        take(file);
-        scene.contents[i].file.path = file.path;
-      }
+      for (const std::size_t i : left) hand_over(scene.contents[i], take);
       take(scene.cells.back());
-      scene.cells.clear();
+      scene.cells.back().bytes = {};
+      if (!left.empty()) keep(scene, places);
     }
-    first = end - 1;
+    first = places.back();
   }
 }
 
-/// What belongs to no cell, the root made light.
-void encode_top(Scene& scene, TilePlan& plan) {
-  if (plan.root.is_cell) {
-    encode_contents(scene, 0, scene.contents.size());
-  } else {
-    std::vector<std::size_t> top;
-    for (std::size_t i = 0; i < scene.contents.size(); ++i)
-      if (scene.contents[i].frame == 0) top.push_back(i);
-    parallel_for(top.size(), [&](std::size_t i) { encode_content(scene, scene.contents[top[i]]); });
-  }
+/// What belongs to no cell.
+Places top_of(const Scene& scene) {
+  Places top;
+  for (std::size_t i = 0; i < scene.contents.size(); ++i)
+    if (scene.contents[i].frame == 0) top.push_back(i);
+  return top;
+}
+
+/// The same encoded, the root made light.
+void encode_top(Scene& scene, TilePlan& plan, const std::function<void(const Encoded&)>& take) {
+  const Places top = top_of(scene);
+  encode_contents(scene, without_kept(scene, top));
   lighten_root(scene, plan);
+  if (!take) return;
+  for (const std::size_t i : top) hand_over(scene.contents[i], take);
+  keep(scene, top);
 }
 
 void check(const std::vector<ExportBuilding>& buildings) {
@@ -405,7 +456,7 @@ std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings
   scene.frames.push_back(frame_of(scene, plan.root));
   list_contents(scene, plan.root, 0, "");
   encode_cells(scene, take);
-  encode_top(scene, plan);
+  encode_top(scene, plan, take);
   std::size_t next = 0;
   Tile root = assemble(scene, next);
   const TileFrame& frame = scene.frames.front();
@@ -416,8 +467,7 @@ std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings
       {"tileset.json", dumped(start_tileset(scene, frame, std::move(root)))}};
   files.insert(files.end(), std::make_move_iterator(scene.cells.begin()),
                std::make_move_iterator(scene.cells.end()));
-  for (Content& content : scene.contents)
-    if (!content.file.bytes.empty()) files.push_back(std::move(content.file));
+  for (Content& content : scene.contents) files.push_back(std::move(content.file));
   for (Encoded& file : around) files.push_back(std::move(file));
   return files;
 }

@@ -3,12 +3,31 @@
 #pragma once
 
 #include <functional>
+#include <map>
 
 #include "context.h"
 #include "exporters/exporter.h"
 #include "looks.h"
 
 namespace colod {
+
+/// A tile's file that was written, and what it was made from.
+struct TileFacts {
+  std::string key;
+  Box box;  ///< z-up tile space
+  double gsd = 0;
+  std::size_t bytes = 0;
+};
+
+/// What an earlier run has left. A tile that would be made from the same again is not encoded and
+/// not handed over.
+struct KeptTiles {
+  std::vector<std::string> keys;  ///< per building: what its levels and their looks are made from
+  std::function<std::map<std::string, TileFacts>(const std::string& folder)>
+      get;  ///< by path: those below the folder, "tiles/" or a cell's own, that are there
+  std::function<void(const std::string& folder, const std::map<std::string, TileFacts>&)>
+      put;  ///< all of a folder, its files having been handed over; none: they are about to change
+};
 
 struct TilesOptions {
   Compression compression = Compression::kDraco;
@@ -21,7 +40,8 @@ struct TilesOptions {
   std::function<void(const Encoded&)> take_context = {};  ///< its files as soon as they are made,
                                                           ///< from several threads; empty: they
                                                           ///< are among the result
-  Placement placement = {};  ///< empty: the frame is local and no place on Earth is made up
+  const KeptTiles* kept = nullptr;  ///< null, or levels lie in a depot: all is made anew
+  Placement placement = {};         ///< empty: the frame is local and no place on Earth is made up
 };
 
 /// First of the result is tileset.json, last written. Frames have their origin at the middle of the
@@ -40,7 +60,9 @@ struct LevelDepot {
 };
 
 /// The same of buildings of which only what `outlines` tell is in memory: levels come cell by cell.
-/// `take` gets a cell's files, its tileset last, when they are made; empty: all is in the result.
+/// `take` gets a cell's files, its tileset last, when they are made, and at the end all others but
+/// tileset.json and the context's; in the result they, and those that were kept, have their place,
+/// but no bytes. Empty: all is in the result.
 std::vector<Encoded> encode_tileset(const std::vector<ExportBuilding>& buildings,
                                     const std::vector<TileOutline>& outlines,
                                     const LevelDepot& depot, const TilesOptions& options,

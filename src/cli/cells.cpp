@@ -1,8 +1,11 @@
 // Stages of a plan's cells: export of a shard, and merge.
 #include "cells.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -14,6 +17,7 @@
 #include "job/job.h"
 #include "plan/cell_lock.h"
 #include "publish/cells.h"
+#include "publish/kept_switching.h"
 #include "store/store.h"
 
 namespace colod::cli {
@@ -59,6 +63,7 @@ void add_cell(const std::string& plan_path, std::size_t cell, PlannedScene& all,
     store.get_coanalysis(all.scene);
   }
   store.get_attributes(all.scene.attributes);
+  store.get_placed_later(all.scene);
   for (BuildingSights& s : store.sights()) sights.push_back(std::move(s));
   all.names.push_back(store.names());
   for (const std::string& name : all.names.back())
@@ -77,9 +82,13 @@ PlannedScene read_planned(const CellArguments& a, const Log& log) {
     add_cell(a.plan.path, cell, all, sights, names);
   if (names.empty())
     throw Error(Stage::kInput, a.plan.path, "holds no building: name other inputs to colod plan");
-  all.scene.switching = plan_switches(
-      sights, all.options.layers, switch_options(a.output.options),
-      read_sights(a.prior, all.options.layers, [&](const Message& m) { log.message(m); }));
+  const SwitchOptions options = switch_options(a.output.options);
+  if (auto before = switching_before(a.plan.path, all.scene, options, log))
+    all.scene.switching = std::move(*before);
+  else
+    all.scene.switching = plan_switches(
+        sights, all.options.layers, options,
+        read_sights(a.prior, all.options.layers, [&](const Message& m) { log.message(m); }));
   return all;
 }
 
@@ -94,6 +103,23 @@ HasFile looks_into(const std::string& out) {
     std::error_code error;
     const std::uintmax_t found = fs::file_size(fs::path(out) / path, error);
     return !error && found == bytes;
+  };
+}
+
+std::string read_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw Error(Stage::kInput, path, "cannot be read: run colod merge again");
+  return bytes;
+}
+
+/// A file that would be as it was keeps its time.
+Take writes_changed(const std::string& out) {
+  return [out](const Encoded& file) {
+    const fs::path path = fs::path(out) / file.path;
+    std::error_code error;
+    const bool is_as_long = fs::file_size(path, error) == file.bytes.size() && !error;
+    if (!is_as_long || read_bytes(path.string()) != file.bytes) write_file(out, file);
   };
 }
 
@@ -121,11 +147,23 @@ int merge(const CellArguments& a) {
   PlannedScene all = read_planned(a, log);
   std::vector<MergedCell> cells = exported_cells(a, all);
   make_folder(a.output.out);
-  const MergeTasks tasks{.take = [&](const Encoded& file) { write_file(a.output.out, file); },
+  Shelf kept(kept_tiles_file(a.plan.path), true);
+  const std::vector<std::string>& formats = a.output.options.formats;
+  const bool has_folder = std::find(formats.begin(), formats.end(), "3dtiles") != formats.end();
+  const std::string tiles = has_folder ? a.output.out : archived_tiles(a.plan.path);
+  const MergeTasks tasks{.take = writes_changed(a.output.out),
                          .write = [&](const std::string& path,
                                       const auto& body) { write_file(a.output.out, path, body); },
                          .has_file = looks_into(a.output.out),
-                         .tell = [&](const Message& m) { log.message(m); }};
+                         .tell = [&](const Message& m) { log.message(m); },
+                         .tiles = {.take = writes_changed(tiles),
+                                   .has_file = looks_into(tiles),
+                                   .read =
+                                       [&](const std::string& path) {
+                                         return read_bytes((fs::path(tiles) / path).string());
+                                       },
+                                   .kept = &kept,
+                                   .place = fs::weakly_canonical(tiles).string()}};
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
@@ -133,6 +171,7 @@ int merge(const CellArguments& a) {
   const CellOutcome outcome = merge_cells(all.common(a.output.options), scene, cells, tasks, [&] {
     return RunTotals{seconds(), peak_memory_bytes()};
   });
+  keep_switching(a.plan.path, scene);
   log_problems(scene, log);
   for (const Message& m : outcome.messages) log.message(m);
   log.message(summary_of(scene, outcome.tally, seconds(), a.output.out));
@@ -140,6 +179,27 @@ int merge(const CellArguments& a) {
 }
 
 }  // namespace
+
+std::optional<Switching> switching_before(const std::string& plan_path, const Scene& scene,
+                                          const SwitchOptions& options, const Log& log) {
+  if (scene.placed_later.empty()) return std::nullopt;
+  const std::string path = kept_switching_file(plan_path);
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::optional<Switching> before = switching_of(text, options);
+  if (!before)
+    log.message({Level::kWarning, path + ": says nothing of these options: when layers switch is "
+                                         "decided anew, by all buildings"});
+  return before;
+}
+
+void keep_switching(const std::string& plan_path, const Scene& scene) {
+  if (!scene.placed_later.empty()) return;
+  const fs::path path = kept_switching_file(plan_path);
+  const std::string folder = path.parent_path().string();
+  write_file(folder.empty() ? "." : folder,
+             {path.filename().string(), switching_text(scene.switching)});
+}
 
 std::vector<std::string> names_of(const Inventory& inventory) {
   std::vector<std::string> names;

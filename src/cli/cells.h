@@ -34,4 +34,11 @@ void for_own_cells(const PlanArguments& a, const Plan& plan,
 /// code.
 int export_shard(const CellArguments& a);
 
+/// When layers switched before buildings were placed later; none: none were, or the merge before
+/// had other options, which is told.
+std::optional<Switching> switching_before(const std::string& plan_path, const Scene& scene,
+                                          const SwitchOptions& options, const Log& log);
+/// Leaves it beside the plan for that, unless buildings were placed later.
+void keep_switching(const std::string& plan_path, const Scene& scene);
+
 }  // namespace colod::cli

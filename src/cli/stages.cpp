@@ -34,6 +34,7 @@ struct StageArguments {
   std::string scene;                ///< the scene file that segment writes
   std::string prior;                ///< an analysed scene file, or empty
   double gap = -1;                  ///< analyze: instead of the scene file's; negative: not given
+  bool is_update = false;           ///< analyze: what is new alone
   ReadOptions read;
   SceneChoice choice;
   Options options;
@@ -197,6 +198,90 @@ int analyze(const StageArguments& a) {
   return 0;
 }
 
+/// Scene files that were analysed together, some of whose buildings may be newer.
+class Update {
+ public:
+  Update(const std::vector<std::string>& files, std::vector<Store>& stores)
+      : stores_(stores), options_(stores.front().options()) {
+    scene_ = read_scene(stores, file_of_);
+    for (std::size_t f = 0; f < files.size(); ++f) {
+      stores[f].get_placed_later(scene_);
+      if (!stores[f].is_analysed()) unanalysed_.insert(f);
+    }
+    prior_.layers = options_.layers;
+    for (std::size_t i = 0; i < scene_.buildings.size(); ++i) sort_in(i, files);
+    if (prior_.buildings.empty())
+      throw Error(Stage::kInput, files.front(),
+                  "nothing of an analysis is left to go by: run colod analyze without --update");
+  }
+
+  void run(const Log& log) {
+    Scene placed;
+    for (const std::size_t i : fresh_) placed.buildings.push_back(std::move(scene_.buildings[i]));
+    if (!fresh_.empty()) analyze_scene(placed, options_, &prior_);
+    std::map<std::size_t, std::set<std::string>> later;  // per file
+    for (std::size_t i = 0; i < fresh_.size(); ++i) {
+      const Building& b = placed.buildings[i];
+      stores_[file_of_[fresh_[i]]].put_layers_of_segments(b);
+      later[file_of_[fresh_[i]]].insert(b.source.name);
+      log.message({Level::kInfo, b.source.name + ": its " +
+                                     std::to_string(b.layer_of_segment.size()) +
+                                     " segments lie where those lie that they are like"});
+    }
+    if (fresh_.empty()) log.message({Level::kInfo, "nothing is new since the last analysis"});
+    keep_facts(later);
+  }
+
+ private:
+  void sort_in(std::size_t i, const std::vector<std::string>& files) {
+    const Building& b = scene_.buildings[i];
+    const std::size_t file = file_of_[i];
+    if (b.descriptors.empty()) return;
+    if (!stores_[file].has_layers_of_segments(b.source.name)) return fresh_.push_back(i);
+    if (unanalysed_.contains(file))
+      throw Error(
+          Stage::kInput, files[file],
+          "has other options than when it was analysed: run colod analyze without --update");
+    if (!scene_.placed_later.contains(b.source.name))
+      prior_.buildings.push_back({b.descriptors, b.layer_of_segment});
+  }
+
+  /// What the analysis told stays; a file without it gets it.
+  void keep_facts(const std::map<std::size_t, std::set<std::string>>& later) {
+    for (std::size_t f = 0; f < stores_.size() && !unanalysed_.empty(); ++f) {
+      if (unanalysed_.contains(f)) continue;
+      Scene facts;
+      stores_[f].get_coanalysis(facts);
+      for (const std::size_t other : unanalysed_) stores_[other].put_coanalysis(facts);
+      break;
+    }
+    for (const auto& [file, names] : later) {
+      Scene before;
+      stores_[file].get_placed_later(before);
+      before.placed_later.insert(names.begin(), names.end());
+      stores_[file].put_placed_later(before.placed_later);
+    }
+  }
+
+  std::vector<Store>& stores_;
+  Options options_;
+  Scene scene_;
+  Prior prior_;                       // what was analysed together
+  std::vector<std::size_t> file_of_;  // per building
+  std::set<std::size_t> unanalysed_;  // files
+  std::vector<std::size_t> fresh_;    // buildings
+};
+
+int update(const StageArguments& a) {
+  limit_threads(a.run.threads);
+  Locks locks;
+  const std::vector<std::string> files = scene_files(a, &locks);
+  std::vector<Store> stores = open_all(files);
+  check_same_rules(stores, files);
+  Update(files, stores).run(a.run.log());
+  return 0;
+}
+
 /// One scene file's buildings; what went wrong is added to `problems`.
 void mesh_scene(Store& store, const Log& log, Scene& problems) {
   store.check_rules();
@@ -267,6 +352,20 @@ class Sources : public Depot {
   std::mutex mutex_;
 };
 
+/// When layers switch; after an update of a plan's cells as before it.
+void decide(const StageArguments& a, const Options& options, Scene& scene, const Log& log) {
+  const SwitchOptions switching = switch_options(a.output.options);
+  if (!a.plan.path.empty())
+    if (auto before = switching_before(a.plan.path, scene, switching, log)) {
+      scene.switching = std::move(*before);
+      for (Building& b : scene.buildings) apply_switches(scene.switching, b);
+      return;
+    }
+  decide_switches(scene, options.layers, switching,
+                  read_sights(a.prior, options.layers, [&](const Message& m) { log.message(m); }));
+  if (!a.plan.path.empty()) keep_switching(a.plan.path, scene);
+}
+
 int export_files(const StageArguments& a) {
   if (!a.plan.path.empty() && is_sharded(a.plan.shard))
     return export_shard({a.plan, a.prior, a.output, a.run});
@@ -283,7 +382,10 @@ int export_files(const StageArguments& a) {
     scene.failures = std::move(plan.failures);
     scene.warnings = std::move(plan.warnings);
   }
-  for (const Store& store : stores) store.get_attributes(scene.attributes);
+  for (const Store& store : stores) {
+    store.get_attributes(scene.attributes);
+    store.get_placed_later(scene);
+  }
   check_exportable(scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
@@ -296,8 +398,7 @@ int export_files(const StageArguments& a) {
       gallery.draw(b);
       sources.drop(b);
     });
-  decide_switches(scene, options.layers, switch_options(a.output.options),
-                  read_sights(a.prior, options.layers, [&](const Message& m) { log.message(m); }));
+  decide(a, options, scene, log);
   return write_all(scene, options, start, gallery.take(scene), sources, a.output, log);
 }
 
@@ -358,9 +459,15 @@ Run add_analyze(CLI::App& app) {
   add_prior_option(app, a->prior);
   app.add_option("--gap", a->gap, "layer 0 is good enough when proven to be this near to the best")
       ->check(number_between(0.0, 1.0));
+  app.add_flag(
+         "--update", a->is_update,
+         "leave buildings as they are that were analysed before, and place those that are new "
+         "or have changed by what the others learnt")
+      ->excludes("--prior")
+      ->excludes("--gap");
   return [a] {
     check_named(*a, "SCENE");
-    return analyze(*a);
+    return a->is_update ? update(*a) : analyze(*a);
   };
 }
 

@@ -1,10 +1,13 @@
 #include "synth/synth.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <memory>
 
 #include "cli.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "numbers.h"
@@ -23,6 +26,35 @@ struct SynthArguments {
   SynthLayout layout = SynthLayout::kObj;
 };
 
+/// Text that is read again once it is whole and, meanwhile, takes no memory.
+class Spool {
+ public:
+  Spool() : file_(std::tmpfile()) {
+    if (!file_) fail("no temporary file can be made: ");
+  }
+  ~Spool() { std::fclose(file_); }
+  Spool(const Spool&) = delete;
+  Spool& operator=(const Spool&) = delete;
+
+  void append(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size())
+      fail("a temporary file cannot be written: ");
+  }
+  void read(const Append& take) {
+    std::rewind(file_);
+    std::string piece(1 << 16, '\0');
+    for (std::size_t n; (n = std::fread(piece.data(), 1, piece.size(), file_)) > 0;)
+      take(piece.substr(0, n));
+    if (std::ferror(file_)) fail("a temporary file cannot be read: ");
+  }
+
+ private:
+  [[noreturn]] static void fail(const char* cause) {
+    throw Error(Stage::kOutput, "truth.json", std::string(cause) + std::strerror(errno));
+  }
+  std::FILE* file_;
+};
+
 /// A scan is painted with what its clean model shows.
 void write_painted(const SynthArguments& a, const std::vector<SynthBuilding>& buildings,
                    const std::vector<SynthBuilding>& clean, const std::string& out) {
@@ -39,29 +71,33 @@ void write_models(const std::vector<SynthBuilding>& buildings, const std::string
   for (const SynthBuilding& b : buildings) write_file(out, {b.source.name + ".obj", synth_obj(b)});
 }
 
+void write_batch(const SynthArguments& a, const SynthBatch& batch) {
+  const bool is_scan = a.options.is_scan || a.options.is_drone;
+  if (a.is_textured) {
+    write_painted(a, batch.buildings, batch.clean, a.out);
+    if (is_scan) write_painted(a, batch.clean, {}, a.out + "/clean");
+  } else if (is_scan) {
+    for (const SynthBuilding& b : batch.buildings)
+      write_file(a.out, {b.source.name + ".ply", synth_ply(b)});
+    if (a.options.is_drone) write_models(batch.clean, a.out + "/clean");
+  } else {
+    write_models(batch.buildings, a.out);
+  }
+}
+
 int synth(const SynthArguments& a) {
   limit_threads(a.threads);
-  const bool is_scan = a.options.is_scan || a.options.is_drone;
-  const std::vector<SynthBuilding> buildings = make_neighbourhood(a.options);
-  std::vector<SynthBuilding> clean;
-  if (a.options.is_drone || (is_scan && a.is_textured)) {
-    SynthOptions options = a.options;
-    options.is_scan = options.is_drone = false;
-    clean = make_neighbourhood(options);
-  }
-  if (a.is_textured) {
-    write_painted(a, buildings, clean, a.out);
-    if (is_scan) write_painted(a, clean, {}, a.out + "/clean");
-  } else if (is_scan) {
-    for (const SynthBuilding& b : buildings)
-      write_file(a.out, {b.source.name + ".ply", synth_ply(b)});
-    if (a.options.is_drone) write_models(clean, a.out + "/clean");
-  } else {
-    write_models(buildings, a.out);
-  }
-  write_file(a.out, {"truth.json", truth_json(buildings, a.options)});
-  std::fprintf(stderr, "colod: %zu buildings and truth.json written to %s\n", buildings.size(),
-               a.out.c_str());
+  Spool truth;
+  truth.append(truth_before(a.options));
+  int done = 0;
+  stream_neighbourhood(a.options, [&](const SynthBatch& batch) {
+    write_batch(a, batch);
+    for (const SynthBuilding& b : batch.buildings)
+      truth.append((done++ > 0 ? ",\n" : "") + truth_entry(b));
+  });
+  truth.append(truth_after());
+  write_file(a.out, "truth.json", [&](const Append& append) { truth.read(append); });
+  std::fprintf(stderr, "colod: %d buildings and truth.json written to %s\n", done, a.out.c_str());
   return 0;
 }
 

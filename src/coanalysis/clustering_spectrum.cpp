@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "clustering_neighbours.h"
 #include "core/parallel.h"
@@ -48,27 +49,50 @@ Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, double e
   return scale.asDiagonal() * a * scale.asDiagonal();
 }
 
-// An edge counts when either end names the other.
-Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Similarity similarity) {
-  const std::size_t n = segments.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  {
-    const auto nearest = nearest_neighbours(segments, kNeighbours, eta, similarity);
-    entries.reserve(n * (2 * kNeighbours + 1));
-    for (std::size_t i = 0; i < n; ++i) {
-      entries.emplace_back(i, i, 1.0);
-      for (const Neighbour& near : nearest[i]) {
-        entries.emplace_back(i, near.index, near.similarity);
-        entries.emplace_back(near.index, i, near.similarity);
-      }
-    }
+using Columns = std::vector<std::vector<Neighbour>>;
+
+bool is_before(const Neighbour& a, const Neighbour& b) { return a.index < b.index; }
+
+// An edge counts when either end names the other: each column gets those that name it and that it
+// does not name, behind its own. Columns are sorted by index.
+void add_reverse_edges(Columns& columns) {
+  std::vector<std::size_t> own(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    std::sort(columns[i].begin(), columns[i].end(), is_before);
+    own[i] = columns[i].size();
   }
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t e = 0; e < own[i]; ++e) {
+      const Neighbour edge = columns[i][e], back{static_cast<int>(i), edge.similarity};
+      std::vector<Neighbour>& other = columns[edge.index];
+      const auto end = other.begin() + static_cast<std::ptrdiff_t>(own[edge.index]);
+      if (!std::binary_search(other.begin(), end, back, is_before)) other.push_back(back);
+    }
+  for (std::vector<Neighbour>& column : columns) std::sort(column.begin(), column.end(), is_before);
+}
+
+// Column by column, each let go of when it is in: at no time is all there twice.
+Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Similarity similarity) {
+  const auto n = static_cast<Eigen::Index>(segments.size());
+  Columns columns = nearest_neighbours(segments, kNeighbours, eta, similarity);
+  add_reverse_edges(columns);
+  Eigen::Index entries = n;
+  for (const std::vector<Neighbour>& column : columns) entries += std::ssize(column);
   Sparse s(n, n);
-  s.setFromTriplets(entries.begin(), entries.end(),
-                    [](double a, double b) { return std::max(a, b); });
-  const Eigen::VectorXd scale =
-      (s * Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n))).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * s * scale.asDiagonal();
+  s.reserve(entries);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    std::vector<Neighbour> column = std::exchange(columns[static_cast<std::size_t>(i)], {});
+    const Neighbour self{static_cast<int>(i), 1.0};
+    column.insert(std::lower_bound(column.begin(), column.end(), self, is_before), self);
+    s.startVec(i);
+    for (const Neighbour& near : column) s.insertBack(near.index, i) = near.similarity;
+  }
+  s.finalize();
+  const Eigen::VectorXd scale = (s * Eigen::VectorXd::Ones(n)).cwiseSqrt().cwiseInverse();
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Sparse::InnerIterator entry(s, i); entry; ++entry)
+      entry.valueRef() = scale[entry.row()] * entry.value() * scale[i];
+  return s;
 }
 
 // From A's eigenpairs, falling.

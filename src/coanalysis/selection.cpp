@@ -54,7 +54,9 @@ std::vector<std::vector<char>> all_kept(const std::vector<SelectionBuilding>& bu
   return kept;
 }
 
-double work(const Model& model) { return std::max(1.0, static_cast<double>(model.sim.size())); }
+double work(const Model& model) {
+  return std::max(1.0, static_cast<double>(model.items.size() * model.prototypes));
+}
 
 int block_nodes(const Model& model) {
   return static_cast<int>(

@@ -2,8 +2,8 @@
 // (Kuehn, Hamburger, "A heuristic program for locating warehouses", 1963); several starts.
 //
 // E_0 couples buildings through the best and second-best similarity of every prototype to every
-// building's dropped items. Both are kept up to date, so that a move costs one pass over the
-// prototypes.
+// building's dropped items. Those of the building that is visited are kept up to date, so that a
+// move costs one pass over the prototypes; of the others only the sum of the best is.
 //
 // Differs: the same for both rules; the paper hands the whole program to a solver, which does not
 // end beyond some 50 segments (measured in November 2026).
@@ -27,14 +27,18 @@ class Ascent {
  public:
   Ascent(const Model& model, Choice x)
       : model_(model), x_(std::move(x)), n_(model.prototypes), demand_(n_, 0.0) {
-    best_.assign(model.blocks.size() * n_, 0.0f);
+    best_.assign(n_, 0.0f);
     second_ = best_;
-    who_.assign(best_.size(), -1);
+    who_.assign(n_, -1);
     total_.assign(n_, 0.0);
     wanted_.assign(n_, 0.0);
     for (std::size_t k = 0; k < x_.size(); ++k)
       if (x_[k]) wanted_[model.items[k].prototype] += model.items[k].weight;
-    for (std::size_t i = 0; i < model.blocks.size(); ++i) refresh(static_cast<int>(i));
+    for (const Block& block : model.blocks) {
+      visited_ = &block;
+      look();
+      for (std::size_t q = 0; q < n_; ++q) total_[q] += best_[q];
+    }
   }
 
   // Whether block i improved.
@@ -42,9 +46,9 @@ class Ascent {
     visit(i);
     bool is_improved = false;
     for (int moves = 0; moves < kMaxMovesPerVisit; ++moves) {
-      const Move move = best_move(i);
+      const Move move = best_move();
       if (move.gain < kImprovement) break;
-      apply(i, move);
+      apply(move);
       is_improved = true;
     }
     return is_improved;
@@ -54,7 +58,7 @@ class Ascent {
     const Block& block = model_.blocks[i];
     if (block.count == 0) return false;
     visit(i);
-    const Offer offer{&model_, demand_};
+    const Offer offer{rows_, block.first, demand_};
     std::vector<int> current;
     double value = -block_loss(block, x_);
     for (int k = block.first; k < block.first + block.count; ++k)
@@ -64,7 +68,7 @@ class Ascent {
     if (solution.value < value + kImprovement) return false;
     for (int k = block.first; k < block.first + block.count; ++k) set(k, 0);
     for (const int k : solution.dropped) set(k, 1);
-    refresh(i);
+    refresh();
     return true;
   }
 
@@ -80,12 +84,13 @@ class Ascent {
   void visit(int i) {
     const Block& block = model_.blocks[i];
     visited_ = &block;
+    look();
     demand_ = wanted_;
     profit_.assign(block.count, 0.0);
     for (int k = block.first; k < block.first + block.count; ++k) {
       const Item& item = model_.items[k];
       if (x_[k]) demand_[item.prototype] -= item.weight;
-      const double others = total_[item.prototype] - best_[i * n_ + item.prototype];
+      const double others = total_[item.prototype] - best_[item.prototype];
       profit_[k - block.first] = item.gain + item.weight * std::max(0.0, others);
     }
     for (int k = block.first; k < block.first + block.count; ++k) {
@@ -102,54 +107,61 @@ class Ascent {
     x_[k] = value;
   }
 
-  // Recomputes what block i's dropped items offer to all others.
-  void refresh(int i) {
-    const Block& block = model_.blocks[i];
-    float* best = best_.data() + i * n_;
-    float* second = second_.data() + i * n_;
-    int* who = who_.data() + i * n_;
-    for (std::size_t q = 0; q < n_; ++q) total_[q] -= best[q];
-    std::fill(best, best + n_, 0.0f);
-    std::fill(second, second + n_, 0.0f);
-    std::fill(who, who + n_, -1);
+  const float* row(int k) const { return rows_ + (k - visited_->first) * n_; }
+
+  // What the visited block has, and what its dropped items offer to all others.
+  void look() {
+    rows_ = model_.rows(*visited_, room_);
+    look_at_offer();
+  }
+  void look_at_offer() {
+    const Block& block = *visited_;
+    std::fill(best_.begin(), best_.end(), 0.0f);
+    std::fill(second_.begin(), second_.end(), 0.0f);
+    std::fill(who_.begin(), who_.end(), -1);
     for (int k = block.first; k < block.first + block.count; ++k) {
       if (!x_[k]) continue;
-      const float* row = model_.row(k);
+      const float* sim = row(k);
       for (std::size_t q = 0; q < n_; ++q) {
-        if (row[q] > best[q])
-          second[q] = best[q], best[q] = row[q], who[q] = k;
+        if (sim[q] > best_[q])
+          second_[q] = best_[q], best_[q] = sim[q], who_[q] = k;
         else
-          second[q] = std::max(second[q], row[q]);
+          second_[q] = std::max(second_[q], sim[q]);
       }
     }
-    for (std::size_t q = 0; q < n_; ++q) total_[q] += best[q];
   }
 
-  // What the others gain when the block's items change by this move.
-  double offer_change(int i, int add, int remove) const {
-    const float* best = best_.data() + i * n_;
-    const float* second = second_.data() + i * n_;
-    const int* who = who_.data() + i * n_;
+  // The same of the visited block, whose items have changed.
+  void refresh() {
+    for (std::size_t q = 0; q < n_; ++q) total_[q] -= best_[q];
+    look_at_offer();
+    for (std::size_t q = 0; q < n_; ++q) total_[q] += best_[q];
+  }
+
+  // What the others gain when the visited block's items change by this move.
+  double offer_change(int add, int remove) const {
+    const float *best = best_.data(), *second = second_.data();
+    const int* who = who_.data();
     double change = 0;
     if (remove < 0) {
-      const float* row = model_.row(add);
-      for (std::size_t q = 0; q < n_; ++q) change += demand_[q] * std::max(0.0f, row[q] - best[q]);
+      const float* sim = row(add);
+      for (std::size_t q = 0; q < n_; ++q) change += demand_[q] * std::max(0.0f, sim[q] - best[q]);
     } else if (add < 0) {
       for (std::size_t q = 0; q < n_; ++q)
         change += who[q] == remove ? demand_[q] * (second[q] - best[q]) : 0;
     } else {
-      const float* row = model_.row(add);
+      const float* sim = row(add);
       for (std::size_t q = 0; q < n_; ++q) {
         const float left = who[q] == remove ? second[q] : best[q];
-        change += demand_[q] * (std::max(left, row[q]) - best[q]);
+        change += demand_[q] * (std::max(left, sim[q]) - best[q]);
       }
     }
     return change;
   }
 
   // −infinity when infeasible.
-  double gain_of(int i, double loss, int add, int remove) {
-    const Block& block = model_.blocks[i];
+  double gain_of(double loss, int add, int remove) {
+    const Block& block = *visited_;
     if (add >= 0) x_[add] = 1;
     if (remove >= 0) x_[remove] = 0;
     const double new_loss = block_loss(block, x_);
@@ -157,15 +169,15 @@ class Ascent {
     if (remove >= 0) x_[remove] = 1;
     if (new_loss > block.capacity) return -std::numeric_limits<double>::infinity();
     return loss - new_loss + (add >= 0 ? own_profit(add) : 0) -
-           (remove >= 0 ? own_profit(remove) : 0) + offer_change(i, add, remove);
+           (remove >= 0 ? own_profit(remove) : 0) + offer_change(add, remove);
   }
 
-  Move best_move(int i) {
-    const Block& block = model_.blocks[i];
+  Move best_move() {
+    const Block& block = *visited_;
     const double loss = block_loss(block, x_);
     Move best;
     const auto consider = [&](int add, int remove) {
-      const double gain = gain_of(i, loss, add, remove);
+      const double gain = gain_of(loss, add, remove);
       if (gain > best.gain + kImprovement) best = {gain, add, remove};
     };
     const int end = block.first + block.count;
@@ -177,23 +189,25 @@ class Ascent {
     return best;
   }
 
-  void apply(int i, const Move& move) {
+  void apply(const Move& move) {
     if (move.add >= 0) set(move.add, 1);
     if (move.remove >= 0) set(move.remove, 0);
-    refresh(i);
+    refresh();
   }
 
   const Model& model_;
   Choice x_;
-  std::size_t n_;                     // prototypes
-  std::vector<float> best_, second_;  // [block][prototype]: similarity to the block's dropped items
-  std::vector<int> who_;              // [block][prototype]: which of them is the best, −1 none
-  std::vector<double> total_;         // Σ over blocks of best_
-  std::vector<double> wanted_;        // per prototype: weights of the dropped items
+  std::size_t n_;               // prototypes
+  std::vector<double> total_;   // Σ over blocks of their best_
+  std::vector<double> wanted_;  // per prototype: weights of the dropped items
   // Of the visited block:
   const Block* visited_ = nullptr;
-  std::vector<double> demand_;  // per prototype: weights of the other blocks' dropped items
-  std::vector<double> profit_;  // per item of the block: of dropping it, loss and offer apart
+  const float* rows_ = nullptr;       // its items' similarities
+  std::vector<float> room_;           // for them
+  std::vector<float> best_, second_;  // per prototype: similarity to the block's dropped items
+  std::vector<int> who_;              // per prototype: which of them is the best, −1 none
+  std::vector<double> demand_;        // per prototype: weights of the other blocks' dropped items
+  std::vector<double> profit_;        // per item of the block: of dropping it, loss and offer apart
 };
 
 std::vector<int> block_order(const Model& model, const Block& block, int start,

@@ -24,7 +24,7 @@ double Offer::value(const std::vector<int>& set) const {
   const std::size_t n = weights.size();
   std::vector<float> best(n, 0.0f);
   for (const int k : set) {
-    const float* row = model->row(k);
+    const float* row = rows + static_cast<std::size_t>(k - first) * n;
     for (std::size_t q = 0; q < n; ++q) best[q] = std::max(best[q], row[q]);
   }
   double sum = 0;

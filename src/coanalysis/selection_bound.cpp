@@ -1,8 +1,8 @@
 // Based on: Geoffrion, "Lagrangean relaxation for integer programming", 1974; Held, Wolfe, Crowder,
 // "Validation of subgradient optimization", 1974 (Polyak's step).
 //
-// The bound. With w_k the item's high weight, s_tq = sim(t, q), q_k the item's prototype and i(k)
-// its block, layer 0 is
+// The bound. With w_k the item's high weight, s_tq = sim(t, q) at most, q_k the item's prototype
+// and i(k) its block, layer 0 is
 //   max Σ_k gain_k x_k − loss(x) + Σ_k w_k Σ_{j≠i(k)} Σ_{t∈j} s_{t q_k} y_kt
 //   s.t. y_kt ≤ x_t (1),   Σ_{t∈j} y_kt ≤ x_k for every other block j,   y ≥ 0,
 //        loss_i ≤ capacity_i
@@ -18,7 +18,8 @@
 // limit is hit its own upper bound takes its place, which keeps L's side of the inequality. Each
 // step's value is thus a bound, and the least is kept. The derivative of L by ν_tq is
 //   x_t Ω_q − [t is taken for q by its block] X_q,   Ω_q = Σ w_k, X_q = Σ w_k x_k
-// over the items k of q in other blocks than t's; ν follows it downhill in units of Ω_q.
+// over the items k of q in other blocks than t's; ν follows it downhill in units of Ω_q. Only what
+// has been taken once has a ν that is not 0: the others are not kept.
 //
 // The knapsacks' sets are feasible choices: every few steps one is improved by the block ascent.
 //
@@ -28,6 +29,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/parallel.h"
@@ -49,8 +51,8 @@ class Relaxation {
   explicit Relaxation(const Model& model)
       : model_(model),
         n_(model.prototypes),
-        nu_(model.items.size() * n_, 0.0f),
-        take_(blocks() * n_, 0.0),
+        nu_(model.items.size()),
+        own_take_(model.items.size(), 0.0),
         who_(blocks() * n_, -1),
         all_(n_, 0.0),
         dropped_(n_, 0.0) {
@@ -59,13 +61,7 @@ class Relaxation {
 
   // L(ν) with the constants; fills x and y.
   double evaluate() {
-    parallel_for(
-        blocks(), [&](std::size_t j) { take(j); }, 4);
-    std::vector<double> total(n_, 0.0);  // Σ_j of what is taken from j
-    parallel_ranges(n_, 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = 0; j < blocks(); ++j)
-        for (std::size_t q = begin; q < end; ++q) total[q] += take_[j * n_ + q];
-    });
+    const std::vector<double> total = take_all();
     std::vector<BlockSolution> solutions(blocks());
     parallel_for(
         blocks(),
@@ -95,8 +91,10 @@ class Relaxation {
         [&](std::size_t i) {
           const Derivative d = derivative(i, 1);
           const int* who = who_.data() + i * n_;
+          std::vector<float> nu(n_, 0.0f);
           for (int t = first(i); t < end(i); ++t) {
-            const float *nu = nu_.data() + t * n_, own = x_[t] ? 1.0f : 0.0f;
+            const float own = x_[t] ? 1.0f : 0.0f;
+            unpack(t, nu);
             std::array<double, 4> sum{};  // four chains of additions instead of one
             for (std::size_t q = 0; q < n_; ++q) {
               const float taken = who[q] == t ? 1.0f : 0.0f;
@@ -104,6 +102,7 @@ class Relaxation {
               sum[q % 4] += h * h;
             }
             sums[i] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+            clear(t, nu);
           }
         },
         4);
@@ -118,13 +117,15 @@ class Relaxation {
         [&](std::size_t i) {
           const Derivative d = derivative(i, length);
           const int* who = who_.data() + i * n_;
+          std::vector<float> nu(n_, 0.0f);
           for (int t = first(i); t < end(i); ++t) {
-            float* nu = nu_.data() + t * n_;
             const float own = x_[t] ? 1.0f : 0.0f;
+            unpack(t, nu);
             for (std::size_t q = 0; q < n_; ++q) {
               const float taken = who[q] == t ? 1.0f : 0.0f;
               nu[q] = std::max(0.0f, nu[q] - (own * d.rise[q] - taken * d.fall[q]));
             }
+            pack(t, nu);
           }
         },
         4);
@@ -133,6 +134,29 @@ class Relaxation {
   const Choice& choice() const { return x_; }
 
  private:
+  struct Multiplier {
+    std::uint32_t prototype;
+    float value;
+  };
+
+  // An item's multipliers into `nu`, which is 0, and away from there.
+  void unpack(int t, std::vector<float>& nu) const {
+    for (const Multiplier& m : nu_[t]) nu[m.prototype] = m.value;
+  }
+  void clear(int t, std::vector<float>& nu) const {
+    for (const Multiplier& m : nu_[t]) nu[m.prototype] = 0;
+  }
+  // Keeps them; `nu` is 0 again.
+  void pack(int t, std::vector<float>& nu) {
+    const auto count = n_ - static_cast<std::size_t>(std::count(nu.begin(), nu.end(), 0.0f));
+    std::vector<Multiplier> kept;
+    kept.reserve(count);
+    for (std::size_t q = 0; q < n_ && kept.size() < count; ++q)
+      if (nu[q] != 0) kept.push_back({static_cast<std::uint32_t>(q), nu[q]});
+    nu_[t].swap(kept);
+    std::fill(nu.begin(), nu.end(), 0.0f);
+  }
+
   // By ν_tq: `rise` where t is dropped, less `fall` where it is taken.
   struct Derivative {
     std::vector<float> rise, fall;
@@ -156,22 +180,39 @@ class Relaxation {
     return d;
   }
 
+  // Σ_j of what is taken from block j, per prototype; some blocks at a time, to save memory.
+  std::vector<double> take_all() {
+    constexpr std::size_t kTogether = 256;
+    std::vector<double> total(n_, 0.0), taken(std::min(kTogether, blocks()) * n_);
+    for (std::size_t begin = 0; begin < blocks(); begin += kTogether) {
+      const std::size_t count = std::min(kTogether, blocks() - begin);
+      parallel_for(
+          count, [&](std::size_t j) { take(begin + j, taken.data() + j * n_); }, 4);
+      parallel_ranges(n_, 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t j = 0; j < count; ++j)
+          for (std::size_t q = from; q < to; ++q) total[q] += taken[j * n_ + q];
+      });
+    }
+    return total;
+  }
+
   // What block j gives to each prototype, and which of its items does.
-  void take(std::size_t j) {
-    const Block& block = model_.blocks[j];
-    double* best = take_.data() + j * n_;
+  void take(std::size_t j, double* best) {
     int* who = who_.data() + j * n_;
     std::fill(best, best + n_, 0.0);
     std::fill(who, who + n_, -1);
-    for (int t = block.first; t < block.first + block.count; ++t) {
-      const float* sim = model_.row(t);
-      const float* nu = nu_.data() + t * n_;
+    std::vector<float> room, nu(n_, 0.0f);
+    const float* sim = model_.rows_high(model_.blocks[j], room);
+    for (int t = first(j); t < end(j); ++t, sim += n_) {
+      unpack(t, nu);
       for (std::size_t q = 0; q < n_; ++q) {
         const double left = static_cast<double>(sim[q]) - nu[q];
         who[q] = left > best[q] ? t : who[q];
         best[q] = std::max(best[q], left);
       }
+      clear(t, nu);
     }
+    for (int k = first(j); k < end(j); ++k) own_take_[k] = best[model_.items[k].prototype];
   }
 
   // Sums over the prototypes without block i's own items.
@@ -193,22 +234,21 @@ class Relaxation {
     std::vector<double> profit(block.count);
     for (int k = block.first; k < block.first + block.count; ++k) {
       const Item& item = model_.items[k];
-      const double others = total[item.prototype] - take_[i * n_ + item.prototype];
+      const double others = total[item.prototype] - own_take_[k];
       double sum = item.gain + item.weight_high * std::max(0.0, others);
-      const float* nu = nu_.data() + k * n_;
-      for (std::size_t q = 0; q < n_; ++q) sum += nu[q] * all[q];
+      for (const Multiplier& m : nu_[k]) sum += m.value * all[m.prototype];
       profit[k - block.first] = sum;
     }
     return profit;
   }
 
   const Model& model_;
-  std::size_t n_;                // prototypes
-  std::vector<float> nu_;        // [item][prototype]
-  std::vector<double> take_;     // [block][prototype]
-  std::vector<int> who_;         // [block][prototype]
-  std::vector<double> all_;      // per prototype: weights of its items
-  std::vector<double> dropped_;  // of those that are dropped
+  std::size_t n_;                            // prototypes
+  std::vector<std::vector<Multiplier>> nu_;  // per item those that are not 0, by prototype
+  std::vector<double> own_take_;             // per item: what its own block gives to its prototype
+  std::vector<int> who_;                     // [block][prototype]
+  std::vector<double> all_;                  // per prototype: weights of its items
+  std::vector<double> dropped_;              // of those that are dropped
   Choice x_;
 };
 

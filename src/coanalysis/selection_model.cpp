@@ -19,6 +19,7 @@
 #include "parameters.h"
 
 namespace colod::selection {
+
 namespace {
 
 using namespace parameters::coanalysis;
@@ -163,6 +164,25 @@ Model add_buildings(const std::vector<SelectionBuilding>& buildings,
 
 }  // namespace
 
+const float* Model::rows(const Block& block, std::vector<float>& room) const {
+  const std::size_t begin = static_cast<std::size_t>(block.first) * prototypes;
+  if (is_exact) return sim.data() + begin;
+  const std::uint16_t* coarse = coarse_sim.data() + begin;
+  room.resize(static_cast<std::size_t>(block.count) * prototypes);
+  for (std::size_t i = 0; i < room.size(); ++i) room[i] = kSimUnit * static_cast<float>(coarse[i]);
+  return room.data();
+}
+
+const float* Model::rows_high(const Block& block, std::vector<float>& room) const {
+  if (is_exact) return rows(block, room);
+  const std::uint16_t* coarse =
+      coarse_sim.data() + static_cast<std::size_t>(block.first) * prototypes;
+  room.resize(static_cast<std::size_t>(block.count) * prototypes);
+  for (std::size_t i = 0; i < room.size(); ++i)
+    room[i] = kSimUnit * static_cast<float>(coarse[i] + 1);
+  return room.data();
+}
+
 Model build_model(const std::vector<SelectionBuilding>& buildings,
                   const SelectionOptions& options) {
   Model model = add_buildings(buildings, options);
@@ -194,26 +214,36 @@ double objective(const Model& model, const Choice& x) {
     if (loss > b.capacity) return -std::numeric_limits<double>::infinity();
     e += b.constant - loss;
   }
-  // best[i][q]: the block's dropped item that is most similar to q; total: over all blocks.
+  // best[q]: the block's dropped item that is most similar to q; total: over all blocks.
+  constexpr std::size_t kTogether = 256;  // blocks, so that memory does not grow with their number
   const std::size_t width = model.prototypes;
-  std::vector<float> best(model.blocks.size() * width, 0.0f);
-  parallel_for(
-      model.blocks.size(),
-      [&](std::size_t i) {
-        const Block& b = model.blocks[i];
-        float* most = best.data() + i * width;
-        for (int t = b.first; t < b.first + b.count; ++t)
-          for (std::size_t q = 0; q < width && x[t]; ++q)
-            most[q] = std::max(most[q], model.row(t)[q]);
-      },
-      8);
+  std::vector<float> best(std::min(kTogether, model.blocks.size()) * width);
+  std::vector<float> own(model.items.size());  // per item: what its block offers to its prototype
   std::vector<double> total(width, 0.0);
-  for (std::size_t i = 0; i < model.blocks.size(); ++i)
-    for (std::size_t q = 0; q < width; ++q) total[q] += best[i * width + q];
+  for (std::size_t first = 0; first < model.blocks.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, model.blocks.size() - first);
+    parallel_for(
+        count,
+        [&](std::size_t i) {
+          const Block& b = model.blocks[first + i];
+          float* most = best.data() + i * width;
+          std::vector<float> room;
+          std::fill(most, most + width, 0.0f);
+          const float* sim = model.rows(b, room);
+          for (int t = b.first; t < b.first + b.count; ++t, sim += width) {
+            if (!x[t]) continue;
+            for (std::size_t q = 0; q < width; ++q) most[q] = std::max(most[q], sim[q]);
+          }
+          for (int k = b.first; k < b.first + b.count; ++k) own[k] = most[model.items[k].prototype];
+        },
+        8);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t q = 0; q < width; ++q) total[q] += best[i * width + q];
+  }
   for (int k = 0; k < model.size(); ++k) {
     if (!x[k]) continue;
     const Item& item = model.items[k];
-    const double others = total[item.prototype] - best[item.block * width + item.prototype];
+    const double others = total[item.prototype] - own[k];
     e += item.gain + item.weight * others;
   }
   return e;

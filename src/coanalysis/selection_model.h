@@ -15,6 +15,7 @@
 // is never more than the true value, with the latter never less.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -52,16 +53,22 @@ struct Model {
   std::vector<Item> items;
   std::size_t prototypes = 0;
   bool is_exact = true;    ///< item k is prototype k; a block's similarities to itself are 0
-  std::vector<float> sim;  ///< an item a row, a prototype a column
+  std::vector<float> sim;  ///< exact: an item a row, a prototype a column
+  std::vector<std::uint16_t> coarse_sim;  ///< else: the same in units of kSimUnit, rounded down
 
   int size() const { return static_cast<int>(items.size()); }
-  const float* row(int k) const { return sim.data() + static_cast<std::size_t>(k) * prototypes; }
+  /// Similarities of a block's items to all prototypes, an item a row, at least and at most; `room`
+  /// holds them if need be.
+  const float* rows(const Block& block, std::vector<float>& room) const;
+  const float* rows_high(const Block& block, std::vector<float>& room) const;
 };
+
+constexpr float kSimUnit = 1.0f / 65536;
 
 Model build_model(const std::vector<SelectionBuilding>& buildings, const SelectionOptions& options);
 
-/// Gives the items prototypes, at most `most` of them, and fills Model::sim; divides and multiplies
-/// the weights by the spreads.
+/// Gives the items prototypes, at most `most` of them, and fills Model::coarse_sim; divides and
+/// multiplies the weights by the spreads.
 void share_prototypes(const std::vector<SelectionBuilding>& buildings, double eta, int most,
                       Model& model);
 
@@ -72,7 +79,8 @@ double objective(const Model& model, const Choice& x);
 
 /// What the other blocks gain when this one offers a set: Σ_q weights[q] max_{k∈set} sim(k, q).
 struct Offer {
-  const Model* model = nullptr;
+  const float* rows = nullptr;  ///< Model::rows of the block
+  int first = 0;                ///< its first item
   std::vector<double> weights;  ///< per prototype: of the other blocks' dropped items
 
   double value(const std::vector<int>& set) const;

@@ -63,7 +63,7 @@ class Writer {
     if (weight == 0) return;
     Row sum;
     for (int t = block.first; t < block.first + block.count; ++t) {
-      const double worth = weight * model_.row(t)[k];
+      const double worth = weight * model_.sim[t * model_.prototypes + k];
       if (!(worth > 0)) continue;
       const int column = new_column(worth);
       sum.add(column, 1);

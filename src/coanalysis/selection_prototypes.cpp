@@ -25,6 +25,7 @@
 // Notation: k, t items, q prototype, h histogram, v eigenvalues, ρ as above.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
 
@@ -145,7 +146,7 @@ void share_prototypes(const std::vector<SelectionBuilding>& buildings, double et
       items.empty() ? std::vector<Descriptor>(1) : find_centres(items, eta, most);
   model.is_exact = false;
   model.prototypes = centres.size();
-  model.sim.assign(all.size() * centres.size(), 0.0f);
+  model.coarse_sim.assign(all.size() * centres.size(), 0);
   parallel_for(
       all.size(),
       [&](std::size_t k) {
@@ -155,13 +156,13 @@ void share_prototypes(const std::vector<SelectionBuilding>& buildings, double et
           item.weight = item.weight_high = 0;
           return;
         }
-        const auto [centre, rho] = nearest_centre(*all[k], centres, eta);
-        const double spread = std::exp(rho) * (1 + kFloatRounding);
-        item.prototype = centre;
+        const Nearest nearest = nearest_centre(*all[k], centres, eta);
+        const double spread = std::exp(nearest.rho) * (1 + kFloatRounding);
+        item.prototype = nearest.centre;
         item.weight /= spread, item.weight_high *= spread;
         for (std::size_t q = 0; q < centres.size(); ++q)
-          model.sim[k * centres.size() + q] =
-              static_cast<float>(segment_similarity(*all[k], centres[q], eta));
+          model.coarse_sim[k * centres.size() + q] = static_cast<std::uint16_t>(
+              std::min(65535.0, segment_similarity(*all[k], centres[q], eta) / kSimUnit));
       },
       16);
 }

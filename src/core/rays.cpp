@@ -146,7 +146,9 @@ struct RayScene::Impl {
     if (scene) rtcReleaseScene(scene);
   }
 
-  void collect(const std::vector<Vec3>& vertices, const std::vector<Face>& triangles);
+  /// `whole`: the box about which is counted; the triangles' own where it is empty.
+  void collect(const std::vector<Vec3>& vertices, const std::vector<Face>& triangles,
+               const Box& whole);
   void commit();
   RayHit make_hit(unsigned triangle, double distance, const Vec3& direction) const {
     const Vec3* c = &corners[3 * static_cast<std::size_t>(triangle)];
@@ -155,8 +157,8 @@ struct RayScene::Impl {
   }
 };
 
-void RayScene::Impl::collect(const std::vector<Vec3>& vertices,
-                             const std::vector<Face>& triangles) {
+void RayScene::Impl::collect(const std::vector<Vec3>& vertices, const std::vector<Face>& triangles,
+                             const Box& whole) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];
     assert(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < static_cast<int>(vertices.size()));
@@ -165,7 +167,7 @@ void RayScene::Impl::collect(const std::vector<Vec3>& vertices,
     original.push_back(static_cast<int>(i));
   }
   if (corners.empty()) return;
-  const Box box = bounding_box(corners);
+  const Box box = whole.is_empty() ? bounding_box(corners) : whole;
   center = box.center();
   scale = 0.5 * box.diagonal();
   half_size = 0.5 * box.size() + Vec3::Constant(kRelativeError * scale);
@@ -199,7 +201,12 @@ void RayScene::Impl::commit() {
 
 RayScene::RayScene(const std::vector<Vec3>& vertices, const std::vector<Face>& triangles)
     : impl_(std::make_unique<Impl>()) {
-  impl_->collect(vertices, triangles);
+  impl_->collect(vertices, triangles, {});
+  impl_->commit();
+}
+
+RayScene::RayScene(const Mesh& part, const Box& whole) : impl_(std::make_unique<Impl>()) {
+  impl_->collect(part.vertices, part.faces, whole);
   impl_->commit();
 }
 

@@ -33,6 +33,9 @@ class RayScene {
  public:
   RayScene(const std::vector<Vec3>& vertices, const std::vector<Face>& triangles);
   explicit RayScene(const Mesh& mesh) : RayScene(mesh.vertices, mesh.faces) {}
+  /// Part of a soup whose box is `whole`: rays that can meet nothing else of the soup get the bits
+  /// that all of it would give.
+  RayScene(const Mesh& part, const Box& whole);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -155,7 +156,9 @@ struct Scene {
   std::shared_ptr<const Context> context;  ///< what is no building; null: nothing, or left out
   std::vector<ClassArea> classes;          ///< of a place that was taken apart
   std::string found_footprints;            ///< GeoJSON; empty: none were looked for
-  bool has_prior = false;  ///< layers come from another scene that was analysed before
+  bool has_prior = false;              ///< layers come from another scene that was analysed before
+  std::set<std::string> placed_later;  ///< buildings that were placed by what the others learnt,
+                                       ///< since those were analysed together
 };
 
 Counts count(const Building& building);

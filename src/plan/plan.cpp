@@ -236,6 +236,22 @@ std::string cell_export(const std::string& plan_path, std::size_t cell) {
   return beside(plan_path, cell, ".export");
 }
 
+namespace {
+
+std::string beside(const std::string& plan_path, const char* name) {
+  return (std::filesystem::path(plan_path).parent_path() / name).string();
+}
+
+}  // namespace
+
+std::string kept_tiles_file(const std::string& plan_path) {
+  return beside(plan_path, "merge.tiles");
+}
+std::string archived_tiles(const std::string& plan_path) { return beside(plan_path, "archived"); }
+std::string kept_switching_file(const std::string& plan_path) {
+  return beside(plan_path, "switching.json");
+}
+
 bool is_sharded(const std::string& text) {
   return !text.empty() || number(getenv("SLURM_ARRAY_TASK_ID")) ||
          number(getenv("JOB_COMPLETION_INDEX"));

@@ -53,6 +53,11 @@ std::string cell_scene(const std::string& plan_path, std::size_t cell);
 std::string cell_stamp_file(const std::string& plan_path, std::size_t cell);
 /// What its export hands to the merge.
 std::string cell_export(const std::string& plan_path, std::size_t cell);
+/// What a merge leaves for the next one: which tiles there are, and when layers switch.
+std::string kept_tiles_file(const std::string& plan_path);
+/// The folder of tiles that only an archive shows.
+std::string archived_tiles(const std::string& plan_path);
+std::string kept_switching_file(const std::string& plan_path);
 
 /// Which of `count` runs this is, 0 … count − 1.
 struct Shard {

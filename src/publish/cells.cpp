@@ -54,6 +54,8 @@ class CellExporter {
                 picture_options(2 * cells.buildings, cells.options.layers)},
         gallery_(cells.buildings, cells.options.layers) {}
 
+  std::string key(const CellBuilding& building) const { return key_of(cells_, stamp_, building); }
+
   Exported run(const CellBuilding& building) {
     Building b = tasks_.load(building.name);
     apply_switches(cells_.scene.switching, b);
@@ -68,7 +70,7 @@ class CellExporter {
     std::string lods;
     if (!r.building.levels.empty()) lods = encode(b, r, pictures);
     drop_geometry(b);
-    r.key = stamp_ + building.meshes_key;
+    r.key = key(building);
     r.path = b.source.path;
     r.tally = tally_of(b);
     r.messages = problems_of(b);
@@ -114,7 +116,8 @@ class CellExporter {
 
 std::string CellScene::stamp() const {
   std::ostringstream text;
-  text << std::setprecision(17) << COLOD_VERSION << ' ' << buildings << ' ' << scene.has_prior;
+  text << std::setprecision(17) << COLOD_VERSION << ' ' << scene.has_prior;
+  if (!output.has_no_page) text << ' ' << buildings;  // the more, the smaller their pictures
   for (const std::string& format : output.formats) text << ' ' << format;
   const TextureOptions& t = output.texture;
   text << ' ' << static_cast<int>(output.compression) << ' ' << output.quantization << ' '
@@ -125,12 +128,21 @@ std::string CellScene::stamp() const {
   text << ' ' << to_string(s.measure) << ' ' << to_string(s.scope) << ' ' << s.visual_error << ' '
        << s.pixel_error << ' ' << s.share << ' ' << s.rounding;
   for (const SceneSwitch& layer : scene.switching.layers) text << ' ' << layer.gsd;
-  for (const auto& [building, own] : scene.attributes)
-    for (const auto& [name, value] : own) text << '\n' << building << ' ' << name << ' ' << value;
   const std::string all = text.str();
   Hash hash;
   hash.add(all.data(), all.size());
   return hash.hex();
+}
+
+std::string key_of(const CellScene& cells, const std::string& stamp, const CellBuilding& building) {
+  std::string own = cells.scene.placed_later.contains(building.name) ? "later" : "";
+  if (const auto found = cells.scene.attributes.find(building.name);
+      found != cells.scene.attributes.end())
+    for (const auto& [name, value] : found->second) own += '\n' + name + ' ' + value;
+  if (own.empty()) return stamp + building.meshes_key;
+  Hash hash;
+  hash.add(own.data(), own.size());
+  return stamp + building.meshes_key + hash.hex();
 }
 
 CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& shelf) {
@@ -138,7 +150,6 @@ CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& s
   for (const CellBuilding& b : tasks.buildings) names.push_back(b.name);
   shelf.keep_only(names);
   CellExporter exporter(cells, tasks);
-  const std::string stamp = cells.stamp();
   std::vector<CellRecord> records(names.size());
   std::mutex mutex;
   parallel_for(names.size(), [&](std::size_t i) {
@@ -148,7 +159,7 @@ CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& s
       facts = shelf.get(names[i], kFacts);
     }
     const bool is_there =
-        is_exported(stamp + tasks.buildings[i].meshes_key, tasks, tasks.buildings[i], facts);
+        is_exported(exporter.key(tasks.buildings[i]), tasks, tasks.buildings[i], facts);
     Exported exported;
     if (is_there)
       exported.record = record_of(facts, names[i]);

@@ -28,6 +28,10 @@ struct CellScene {
   std::string stamp() const;
 };
 
+struct CellBuilding;
+/// What a building's files and pieces are made from. `stamp`: of the scene.
+std::string key_of(const CellScene& scene, const std::string& stamp, const CellBuilding& building);
+
 /// A building of a cell, and what its meshes are made from.
 struct CellBuilding {
   std::string name, meshes_key;
@@ -62,6 +66,15 @@ struct MergedCell {
   std::string remedy;  ///< the command that exports it again
 };
 
+/// Where tiles lie.
+struct TileFolder {
+  Take take;
+  HasFile has_file;
+  std::function<std::string(const std::string& path)> read;
+  Shelf* kept = nullptr;  ///< of tiles that are there already; null: all are made anew
+  std::string place;      ///< what was made for another place is not there
+};
+
 struct MergeTasks {
   Take take;
   std::function<void(const std::string& path,
@@ -69,14 +82,15 @@ struct MergeTasks {
       write;  ///< a file whose bytes come piece by piece
   HasFile has_file;
   Tell tell;
+  TileFolder tiles;  ///< in OUT, or for an archive alone elsewhere
 };
 
 /// lods.json, the tileset cell by cell, then `finish` says the totals, and report.html and
 /// report.json are made. In memory are what CellRecord holds of each building and one cell of
 /// tiles; with report.html the page as well. Throws Error{kInput}, with the cell's remedy, where a
 /// building is missing, is older than its meshes, was exported with other options, or lacks a file,
-/// before it writes anything; Error{kUsage} for a format that is made in memory. `scene` gets what
-/// went wrong. Returns the sum of the buildings and what is to be told of them.
+/// before it writes anything. `scene` gets what went wrong. Returns the sum of the buildings and
+/// what is to be told of them.
 CellOutcome merge_cells(const CellScene& cells, Scene& scene, std::vector<MergedCell>& exported,
                         const MergeTasks& tasks, const std::function<RunTotals()>& finish);
 

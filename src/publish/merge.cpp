@@ -9,6 +9,8 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "exporters/html_report/html_report.h"
+#include "exporters/tiles3d/archive.h"
+#include "kept_tiles.h"
 #include "placement.h"
 #include "publish.h"
 
@@ -26,10 +28,10 @@ struct Entry {
   CellRecord record;
 };
 
-void check_entry(const std::string& stamp, const MergedCell& cell, const CellBuilding& building,
+void check_entry(const std::string& key, const MergedCell& cell, const CellBuilding& building,
                  const CellRecord& record, const MergeTasks& tasks) {
   if (record.key.empty()) refuse(cell, "lacks " + building.name);
-  if (record.key != stamp + building.meshes_key)
+  if (record.key != key)
     refuse(cell, building.name +
                      " was exported with other options, or before its layers, or when layers "
                      "switch, changed");
@@ -60,7 +62,8 @@ class Merge {
     }
     if (buildings.empty()) return;
     if (writes(cells_.output, "engine")) make_lods(facts);
-    if (writes(cells_.output, "3dtiles") && scene_.tileset_failure.empty())
+    if ((writes(cells_.output, "3dtiles") || writes(cells_.output, "3tz")) &&
+        scene_.tileset_failure.empty())
       make_tiles(buildings, outlines, facts);
   }
 
@@ -85,7 +88,7 @@ class Merge {
       for (const CellBuilding& b : cell.buildings) {
         const std::string facts = cell.shelf.get(b.name, kFacts);
         entries_.push_back({b.name, c, facts.empty() ? CellRecord{} : record_of(facts, cell.path)});
-        check_entry(stamp, cell, b, entries_.back().record, tasks_);
+        check_entry(key_of(cells_, stamp, b), cell, b, entries_.back().record, tasks_);
       }
     }
     std::sort(entries_.begin(), entries_.end(),
@@ -140,16 +143,31 @@ class Merge {
             }};
     std::vector<std::string> paths;
     for (const Entry& e : entries_) paths.push_back(e.record.path);
+    std::optional<MergeMemory> memory;
+    if (tasks_.tiles.kept) memory.emplace(tasks_.tiles);
+    if (memory)
+      for (const std::size_t i : entry_of_) memory->add(entries_[i].name, entries_[i].record.key);
     const TilesOptions options{
         .compression = a.compression,
         .quantization = a.quantization,
         .target_sse = a.target_sse,
         .switching = facts,
         .largest_texture = a.texture.largest,
+        .kept = memory ? &memory->tiles() : nullptr,
         .placement = find_placement(paths, a.crs, a.origin, buildings, tasks_.tell)};
     const std::vector<Encoded> files =
-        encode_tileset(buildings, outlines, depot, options, tasks_.take);
-    for (std::size_t i = files.size(); i-- > 0;) tasks_.take(files[i]);
+        encode_tileset(buildings, outlines, depot, options, tasks_.tiles.take);
+    tasks_.tiles.take(files.front());  // all else is there
+    if (writes(a, "3tz")) make_archive(files);
+    if (memory) memory->finish(tasks_.tell);
+  }
+
+  void make_archive(const std::vector<Encoded>& files) {
+    tasks_.write(kArchiveName, [&](const auto& append) {
+      ArchiveWriter archive(append);
+      for (const Encoded& file : files) archive.add(file.path, tasks_.tiles.read(file.path));
+      archive.finish();
+    });
   }
 
   void make_page(const ReportFrame& frame) {
@@ -187,9 +205,6 @@ class Merge {
 
 CellOutcome merge_cells(const CellScene& cells, Scene& scene, std::vector<MergedCell>& exported,
                         const MergeTasks& tasks, const std::function<RunTotals()>& finish) {
-  if (writes(cells.output, "3tz"))
-    throw Error(Stage::kUsage, "--format",
-                "3tz is one file that is made in memory: export the plan without --shard");
   Merge merge(cells, scene, exported, tasks);
   merge.make_files();
   merge.make_report(finish());

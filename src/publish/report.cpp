@@ -260,7 +260,7 @@ ReportFrame report_frame(const Scene& scene, const Options& options, const RunTo
 }
 
 std::string report_row(const Scene& scene, const Building& b) {
-  Json json = building_json(b, scene.has_prior);
+  Json json = building_json(b, scene.has_prior || scene.placed_later.contains(b.source.name));
   if (const auto own = scene.attributes.find(b.source.name); own != scene.attributes.end())
     for (const auto& [name, value] : own->second) json["attributes"][name] = value;
   std::string row = "\n";

@@ -297,7 +297,27 @@ void Store::put_coanalysis(const Scene& scene) {
                   {"seconds", scene.coanalysis_seconds},
                   {"prior", scene.has_prior},
                   {"warnings", warnings}};
-  impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
+  impl_->transaction([&] {
+    impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
+    impl_->execute("DELETE FROM meta WHERE key = 'placed_later'", Stage::kOutput);
+  });
+}
+
+bool Store::is_analysed() const {
+  return impl_->has_row("SELECT 1 FROM meta WHERE key = ?1", "coanalysis");
+}
+
+void Store::put_placed_later(const std::set<std::string>& names) {
+  impl_->write("INSERT OR REPLACE INTO meta VALUES('placed_later', ?1)")
+      .bind(Json(names).dump(-1, ' ', false, Json::error_handler_t::replace))
+      .run();
+}
+
+void Store::get_placed_later(Scene& scene) const {
+  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'placed_later'");
+  if (!s.step()) return;
+  read_json(s.text(), impl_->path, "buildings placed later",
+            [&](const Json& json) { scene.placed_later.merge(json.get<std::set<std::string>>()); });
 }
 
 void Store::put_attributes(const std::map<std::string, Attributes>& attributes) {

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -69,8 +70,15 @@ class Store {
   Prior prior() const;
 
   /// What the co-analysis reported, for the report.
+  /// `put` says that no building was placed later.
   void put_coanalysis(const Scene& scene);
   void get_coanalysis(Scene& scene) const;
+  bool is_analysed() const;
+
+  /// Buildings whose layers are not of this analysis, but were learnt from it; `get` adds to
+  /// Scene::placed_later.
+  void put_placed_later(const std::set<std::string>& names);
+  void get_placed_later(Scene& scene) const;
 
   /// What footprints say of buildings; `get` adds to what is there.
   void put_attributes(const std::map<std::string, Attributes>& attributes);

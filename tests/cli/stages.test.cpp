@@ -1,4 +1,5 @@
 // Stages that are killed and started again, and scenes that have next to nothing in them.
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include "meshes.h"
@@ -292,7 +294,124 @@ TEST_CASE("cells that are exported apart and merged give what one run gives") {
     CHECK_FALSE(call(second));
     CHECK(count_of(slurp(log), "another run is at work") == 1);
   }
-  CHECK_FALSE(run({"merge", "--plan", plan, "-o", out, "--format", "3tz"}, log));
+
+  // An archive alone: the tiles that it shows lie beside the plan.
+  const std::vector<std::string> archive{"--quiet", "--format", "3tz", "--no-report-html"};
+  const auto pack = [&](std::vector<std::string> a) {
+    a.insert(a.end(), archive.begin(), archive.end());
+    return run(a, log);
+  };
+  const std::string packed = f / "packed";
+  REQUIRE(pack({"export", "--plan", plan, "-o", f / "one_packed"}));
+  for (const char* shard : {"0/2", "1/2"})
+    REQUIRE(pack({"export", "--plan", plan, "--shard", shard, "-o", packed}));
+  for (int twice = 0; twice < 2; ++twice) {
+    REQUIRE(pack({"merge", "--plan", plan, "-o", packed}));
+    CHECK(slurp(fs::path(packed) / "tileset.3tz") == slurp(f.path() / "one_packed/tileset.3tz"));
+    CHECK_FALSE(fs::exists(fs::path(packed) / "tiles"));
+  }
+}
+
+struct FileState {
+  std::string bytes;
+  ino_t inode;
+  fs::file_time_type time;
+  bool operator==(const FileState&) const = default;
+};
+
+std::map<std::string, FileState> files_of(const std::string& folder) {
+  std::map<std::string, FileState> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    struct stat facts {};
+    if (!entry.is_regular_file() || stat(entry.path().c_str(), &facts) != 0) continue;
+    files[fs::relative(entry.path(), folder).string()] = {slurp(entry.path()), facts.st_ino,
+                                                          entry.last_write_time()};
+  }
+  return files;
+}
+
+TEST_CASE(
+    "an update writes what changed and its cell's pieces, moves no other layer, and says so") {
+  Folder f;
+  const std::string plan = f / "w/plan.json", log = f / "log", out = f / "out";
+  fs::create_directories(f / "in");
+  constexpr int kHouses = 20;  // two groups of tiles
+  const auto path = [&](int i) { return f.path() / "in" / ("h" + std::to_string(i) + ".off"); };
+  const auto place = [](Mesh mesh, int i) {
+    for (Vec3& v : mesh.vertices) v += Vec3(30 * i, 0, 0);
+    return mesh;
+  };
+  for (int i = 0; i < kHouses; ++i)
+    write_off(path(i), place(i % 2 ? house(i % 5) : house_with_porch(i % 5), i));
+  const auto call = [&](std::vector<std::string> a) {
+    a.insert(a.begin() + 1, {"--plan", plan});
+    return run(a, log);
+  };
+  const auto replan = [&] {
+    return run({"plan", f / "in", "-o", plan, "--cells", "3", "--ns", "12", "--nr", "8"}, log);
+  };
+  const auto finish = [&] {
+    REQUIRE(call({"mesh"}));
+    for (const char* shard : {"0/3", "1/3", "2/3"})
+      REQUIRE(call({"export", "--shard", shard, "-o", out}));
+    REQUIRE(call({"merge", "-o", out}));
+  };
+  REQUIRE(replan());
+  REQUIRE(call({"segment"}));
+  CHECK_FALSE(call({"analyze", "--update"}));
+  CHECK(count_of(slurp(log), "without --update") == 1);
+  REQUIRE(call({"analyze"}));
+  finish();
+  const auto before = files_of(out), work = files_of(f / "w");
+  REQUIRE(call({"analyze", "--update"}));
+  CHECK(count_of(slurp(log), "nothing is new") == 1);
+
+  // Half a metre higher, and inside of all that is planned by boxes.
+  Mesh changed = place(house_with_porch(2), 12);
+  for (Vec3& v : changed.vertices)
+    if (v.z() == 3) v.z() = 2.5;
+  write_off(path(12), changed);
+  REQUIRE(replan());
+  REQUIRE(call({"segment"}));
+  CHECK_FALSE(call({"mesh"}));  // no layers yet
+  REQUIRE(call({"analyze", "--update"}));
+  CHECK(count_of(slurp(log), "segments lie where") == 1);
+  CHECK(count_of(slurp(log), "h12: ") == 1);
+  finish();
+  CHECK(count_of(slurp(log), "1 buildings have changed since the last merge: h12") == 1);
+  const auto after = files_of(out), later = files_of(f / "w");
+
+  REQUIRE(before.size() == after.size());
+  CHECK(before.at("buildings/h12.glb").bytes != after.at("buildings/h12.glb").bytes);
+  int same_tiles = 0, new_tiles = 0;
+  for (const auto& [name, state] : before) {
+    INFO(name);
+    const bool is_same = state == after.at(name);
+    const bool is_tile = name.starts_with("tiles/") && name.ends_with(".glb");
+    if (is_tile) ++(is_same ? same_tiles : new_tiles);
+    if (name.starts_with("buildings/") && name != "buildings/h12.glb") CHECK(is_same);
+  }
+  CHECK(new_tiles > 0);
+  CHECK(same_tiles > new_tiles);
+  int same_cells = 0;
+  for (int cell = 0; cell < 3; ++cell)
+    for (const char* end : {".colod", ".export"}) {
+      const std::string name = "cell-000" + std::to_string(cell) + end;
+      same_cells += work.at(name) == later.at(name);
+    }
+  CHECK(same_cells == 4);  // two cells' files of both kinds
+  CHECK(count_of(after.at("report.json").bytes, "\"prior\": true") == 1);
+
+  // The same as one process makes of it, and analysed anew nothing is left of the update.
+  REQUIRE(call({"export", "-o", f / "one"}));
+  for (const auto& [name, state] : files_of(f / "one"))
+    if (!name.starts_with("report")) {
+      INFO(name);
+      CHECK(state.bytes == after.at(name).bytes);
+    }
+  REQUIRE(call({"analyze"}));
+  finish();
+  CHECK(count_of(slurp(fs::path(out) / "report.json"), "\"prior\": true") == 0);
 }
 
 TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees with the report") {

@@ -131,6 +131,32 @@ TEST_CASE("prototypes: objective and bound enclose what comparing all pairs find
     }
 }
 
+TEST_CASE("prototypes: what the bound counts of a pair is no less than what is between them") {
+  const auto scene = random_scene({.buildings = 20, .segments = 10}, 5);
+  SelectionOptions few = rules(false, 0);
+  few.exact_similarities = 0, few.prototypes = 12;
+  const selection::Model model = selection::build_model(scene, few);
+  std::vector<float> room, high_room;
+  int compared = 0;
+  for (const selection::Block& of : model.blocks) {
+    const float* low = model.rows(of, room);
+    const float* high = model.rows_high(of, high_room);
+    for (int t = 0; t < of.count; ++t)
+      for (const selection::Item& asks : model.items) {
+        const selection::Item& has = model.items[of.first + t];
+        const double true_sim =
+            segment_similarity(scene[asks.building].segments[asks.segment],
+                               scene[has.building].segments[has.segment], few.eta);
+        const double plain = few.lambda * asks.gain / few.beta / 19;
+        const std::size_t at = t * model.prototypes + asks.prototype;
+        REQUIRE(asks.weight * low[at] <= plain * true_sim * (1 + 1e-9));
+        REQUIRE(asks.weight_high * high[at] >= plain * true_sim * (1 - 1e-9));
+        ++compared;
+      }
+  }
+  CHECK(compared > 1000);
+}
+
 TEST_CASE("as many prototypes as segments lose next to nothing") {
   const auto scene = random_scene({.buildings = 6, .segments = 6}, 2);
   SelectionOptions all = rules(false, 0), few = all;
@@ -188,7 +214,7 @@ TEST_CASE("a block's branch and bound against enumeration, alone and with an off
     std::mt19937_64 random(seed);
     std::vector<double> profit(model.size());
     for (double& p : profit) p = 0.1 * uniform(random);
-    selection::Offer offer{&model, std::vector<double>(model.size(), 0.0)};
+    selection::Offer offer{model.sim.data(), 0, std::vector<double>(model.size(), 0.0)};
     for (int t = block.count; t < model.size(); ++t) offer.weights[t] = 0.02 * uniform(random);
     for (const selection::Offer* o : {static_cast<const selection::Offer*>(nullptr),
                                       static_cast<const selection::Offer*>(&offer)}) {

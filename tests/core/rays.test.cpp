@@ -120,6 +120,29 @@ TEST_CASE("occlusion is a first hit within the range") {
   }
 }
 
+TEST_CASE("a part that lies about the whole soup's box answers with the whole's bits") {
+  Rng rng(13);
+  const Mesh near = random_soup(rng, 200, 3), far = moved(random_soup(rng, 100, 3), {900, 0, 0});
+  Mesh whole = near;
+  for (const Face& f : far.faces)
+    for (const int v : f) whole.vertices.push_back(far.vertices[v]);
+  for (int v = static_cast<int>(near.vertices.size()); v < static_cast<int>(whole.vertices.size());
+       v += 3)
+    whole.faces.push_back({v, v + 1, v + 2});
+  const RayScene all(whole), part(near, bounding_box(whole.vertices)), alone(near);
+  int hits = 0, others = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 o = rng.point(10), d = rng.direction();
+    const RayHit hit = part.first_hit(o, d, 0, 50);
+    REQUIRE(hit.triangle == all.first_hit(o, d, 0, 50).triangle);
+    REQUIRE(hit.distance == all.first_hit(o, d, 0, 50).distance);
+    REQUIRE(part.is_occluded(o, d, 0, 50) == all.is_occluded(o, d, 0, 50));
+    hits += bool(hit), others += hit.distance != alone.first_hit(o, d, 0, 50).distance;
+  }
+  CHECK(hits > 200);
+  CHECK(others > 100);  // a box of its own does round otherwise
+}
+
 TEST_CASE("nearest agrees with brute force to double precision") {
   Rng rng(13);
   const Mesh soup = random_soup(rng, 300, 2);

@@ -3,7 +3,10 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <numeric>
+#include <set>
 
 #include "exporters/tiles3d/standins.h"
 #include "exporters/tiles3d/tree.h"
@@ -270,7 +273,12 @@ TEST_CASE("levels that come cell by cell give the tileset that levels in memory 
   CHECK(rest.front().path == "tileset.json");
   CHECK(there == 0);
   CHECK(most < 256);  // of 300: never all at once
-  made.insert(made.end(), rest.begin(), rest.end());
+  made.push_back(rest.front());
+  REQUIRE(rest.size() == expected.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    CHECK(rest[i].path == expected[i].path);
+    CHECK(rest[i].bytes.empty() == (i > 0));
+  }
   const auto by_path = [](const Encoded& a, const Encoded& b) { return a.path < b.path; };
   std::sort(made.begin(), made.end(), by_path);
   std::sort(expected.begin(), expected.end(), by_path);
@@ -280,6 +288,69 @@ TEST_CASE("levels that come cell by cell give the tileset that levels in memory 
     CHECK(made[i].path == expected[i].path);
     CHECK(made[i].bytes == expected[i].bytes);
   }
+}
+
+TEST_CASE("tiles that would be made from the same again are left as they are") {
+  std::vector<ExportBuilding> all = detailed_street(300);
+  std::vector<TileOutline> outlines;
+  for (const ExportBuilding& b : all) outlines.push_back(outline_of(b));
+  std::map<std::string, std::string> disk;
+  std::map<std::string, std::map<std::string, TileFacts>> memory;
+  KeptTiles kept{
+      .keys = std::vector<std::string>(all.size(), "old"),
+      .get = [&](const std::string& folder) { return memory[folder]; },
+      .put = [&](const std::string& folder, const auto& facts) { memory[folder] = facts; }};
+  std::mutex mutex;
+  std::set<int> asked;
+  const LevelDepot depot{.get =
+                             [&](int b) {
+                               const std::lock_guard lock(mutex);
+                               asked.insert(b);
+                             },
+                         .drop = [](int) {},
+                         .coarsest = [&](int b) { return coarsest_look(all[b].levels.front()); }};
+  const auto encode = [&] {
+    std::set<std::string> made;
+    const auto take = [&](const Encoded& f) { disk[f.path] = f.bytes, made.insert(f.path); };
+    take(encode_tileset(all, outlines, depot, {.kept = &kept}, take).front());
+    return made;
+  };
+  const auto check_whole = [&] {
+    const std::vector<Encoded> expected = encode_tileset(all);
+    std::set<std::string> paths;
+    for (const Encoded& file : expected) paths.insert(file.path);
+    for (const auto& [path, bytes] : disk) {
+      INFO(path);
+      CHECK(paths.contains(path));
+    }
+    REQUIRE(disk.size() == expected.size());
+    for (const Encoded& file : expected) {
+      INFO(file.path);
+      CHECK(disk[file.path] == file.bytes);
+    }
+  };
+  const std::set<std::string> first = encode();
+  CHECK(first.size() == disk.size());
+  CHECK(asked.size() == all.size());
+  check_whole();
+
+  asked.clear();
+  for (const std::string& path : encode()) CHECK(path.find(".glb") == path.npos);
+  CHECK(asked.empty());
+  check_whole();
+
+  for (ExportLevel& level : all[7].levels)  // inside its box, so that all tiles keep their places
+    for (Vec3& v : level.mesh.vertices)
+      if (v.z() > 1 && v.z() < 2.9) v.z() -= 0.5;
+  all[7].given_name = "house 7, rebuilt";
+  kept.keys[7] = "new";
+  outlines[7] = outline_of(all[7]);
+  const std::set<std::string> again = encode();
+  CHECK(again.contains("tiles/root.glb"));
+  CHECK(again.size() < first.size() / 4);
+  CHECK(asked.size() <= 16);
+  CHECK(asked.contains(7));
+  check_whole();
 }
 
 TEST_CASE("a building without detail has a box far away all the same") {

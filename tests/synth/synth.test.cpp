@@ -146,6 +146,42 @@ TEST_CASE("the truth names buildings and parts") {
     CHECK(truth.find(key) != std::string::npos);
 }
 
+TEST_CASE("a long street comes a few houses at a time, in order, and the truth in pieces") {
+  const SynthOptions options = {.buildings = 70, .seed = 4};
+  const auto all = make_neighbourhood(options);
+  std::string truth = truth_before(options);
+  std::size_t next = 0, largest = 0;
+  stream_neighbourhood(options, [&](const SynthBatch& batch) {
+    largest = std::max(largest, batch.buildings.size());
+    CHECK(batch.clean.empty());
+    for (const SynthBuilding& b : batch.buildings) {
+      REQUIRE(is_equal(b, all.at(next)));
+      truth += (next++ > 0 ? ",\n" : "") + truth_entry(b);
+    }
+  });
+  CHECK(next == all.size());
+  CHECK(largest < 20);
+  CHECK(truth + truth_after() == truth_json(all, options));
+}
+
+TEST_CASE("a scan comes with the models that were scanned") {
+  const auto models = clean(2, 3);
+  for (const bool is_drone : {false, true}) {
+    const SynthOptions options = {
+        .buildings = 2, .seed = 3, .is_scan = !is_drone, .is_drone = is_drone, .density = 6};
+    int batches = 0;
+    stream_neighbourhood(options, [&](const SynthBatch& batch) {
+      ++batches;
+      REQUIRE(batch.clean.size() == 2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(is_equal(batch.clean[i], models[i]));
+        CHECK_FALSE(is_equal(batch.buildings[i], models[i]));
+      }
+    });
+    CHECK(batches == 1);
+  }
+}
+
 TEST_CASE("a scan follows its building, open below, with holes and floaters") {
   const SynthOptions options = {.buildings = 3, .seed = 2, .is_scan = true, .density = 25};
   const auto scans = make_neighbourhood(options), models = clean(3, 2);

@@ -1,0 +1,48 @@
+#include "kept_switching.h"
+
+#include <nlohmann/json.hpp>
+
+namespace colod {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json options_json(const SwitchOptions& o) {
+  return {{"measure", to_string(o.measure)},
+          {"scope", to_string(o.scope)},
+          {"visual_error", o.visual_error},
+          {"pixel_error", o.pixel_error},
+          {"share", o.share},
+          {"rounding", o.rounding}};
+}
+
+}  // namespace
+
+std::string switching_text(const Switching& switching) {
+  Json json = {{"options", options_json(switching.options)},
+               {"from_prior", switching.is_from_prior},
+               {"warnings", switching.warnings},
+               {"layers", Json::array()}};
+  for (const SceneSwitch& s : switching.layers)
+    json["layers"].push_back(
+        {s.gsd, s.buildings, s.too_coarse, s.coarse_factor, s.too_fine, s.fine_factor});
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<Switching> switching_of(const std::string& text, const SwitchOptions& options) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("options") != options_json(options)) return std::nullopt;
+    Switching switching;
+    switching.options = options;
+    switching.is_from_prior = json.at("from_prior");
+    switching.warnings = json.at("warnings").get<std::vector<std::string>>();
+    for (const Json& s : json.at("layers"))
+      switching.layers.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5)});
+    return switching;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace colod
