@@ -175,7 +175,7 @@ struct LookGauge::Impl {
   double nearest_sample(const Vec3& p) const;
   double distance(const Vec3& p) const;
   bool shows(const Vec3& p, const Vec3& normal) const;
-  bool is_flap(const RayScene& body, const Vec3& p, const Vec3& normal) const;
+  bool is_flap(const RayScene& body, const Mesh& mesh, const Vec3& p, const Vec3& normal) const;
   bool is_unsupported(const RayScene& body, const Vec3& p, const Vec3& normal) const;
   void look_at_surface(const Mesh& mesh, const std::vector<int>& facet_of_face, Looks& looks) const;
 };
@@ -277,9 +277,14 @@ bool LookGauge::Impl::shows(const Vec3& p, const Vec3& normal) const {
   return cross.normalized().dot(normal) > kFacing;
 }
 
-bool LookGauge::Impl::is_flap(const RayScene& body, const Vec3& p, const Vec3& normal) const {
+bool LookGauge::Impl::is_flap(const RayScene& body, const Mesh& mesh, const Vec3& p,
+                              const Vec3& normal) const {
   const RayHit hit = body.first_hit(p, -normal, kSkin, thin);
-  return hit && hit.is_inside && !(shows(p, normal) && shows(p - hit.distance * normal, -normal));
+  if (!hit || !hit.is_inside) return false;
+  // Under the upper edge of a lean-to, or in any sharp corner, a body is thin, but it is no sheet.
+  const Vec3 behind = face_cross(mesh, mesh.faces[hit.triangle]).normalized();
+  if (normal.dot(behind) > kOpposed) return false;
+  return !(shows(p, normal) && shows(p - hit.distance * normal, -normal));
 }
 
 bool LookGauge::Impl::is_unsupported(const RayScene& body, const Vec3& p,
@@ -306,7 +311,7 @@ void LookGauge::Impl::look_at_surface(const Mesh& m, const std::vector<int>& fac
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& p = points[i].point;
       const Vec3 normal = face_cross(m, m.faces[points[i].face]).normalized();
-      is_thin[i] = is_flap(body, p, normal);
+      is_thin[i] = is_flap(body, m, p, normal);
       is_alone[i] = is_unsupported(body, p, normal);
     }
   });

@@ -94,6 +94,21 @@ TEST_CASE("a fin, a spike and a brim are flaps; what the source shows from both 
   CHECK(look(kBox, thick).flaps == 0);
 }
 
+TEST_CASE("a sharp edge of a thick body is no flap, a sheet of that angle's sides is") {
+  for (const double rise : {1.0, 2.0, 4.0}) {  // a lean-to: its upper edge has 83 to 63 degrees
+    Mesh lean_to = kBox;
+    for (Vec3& v : lean_to.vertices)
+      if (v.z() > 0 && v.y() > 0) v.z() += rise;
+    CHECK(look(lean_to, lean_to).flaps == 0);
+    CHECK(look(kBox, lean_to).flaps == 0);
+  }
+  Mesh blade = test::box_mesh({10, 4, 2}, {12, 4.2, 5});  // its sides are 9 degrees off parallel
+  for (Vec3& v : blade.vertices)
+    if (v.x() > 11) v.y() = v.y() > 4.1 ? 4.2 : 3.7;
+  // Both sides, where it is thinner than 0.3 m and farther than that from the wall.
+  CHECK(look(kBox, test::join(kBox, blade)).flaps == Approx(2 * 0.37 * 3).margin(0.4));
+}
+
 TEST_CASE("tops in the air are unsupported; bases, floors and walls under a roof are not") {
   const Mesh tower = test::join(kBox, test::box_mesh({2, 2, 6}, {4, 4, 9}));
   const double air = 2 * 2 + 4 * 2 * 2.5;  // half a metre is near
