@@ -53,8 +53,8 @@ void tell_names(const char* what, const std::vector<std::string>& names, const T
 }  // namespace
 
 MergeMemory::MergeMemory(const TileFolder& folder) : folder_(folder), shelf_(*folder.kept) {
-  tiles_.get = [this](const std::string& folder) { return get(folder); };
-  tiles_.put = [this](const std::string& folder, const auto& facts) { put(folder, facts); };
+  tiles_.get = [this](const std::string& path) { return get(path); };
+  tiles_.put = [this](const std::string& path, const auto& facts) { put(path, facts); };
 }
 
 void MergeMemory::add(const std::string& building, const std::string& key) {
