@@ -1,9 +1,11 @@
 """Small good inputs of every kind that colod reads, made by the program itself: what scripts/mutate changes at random, and what
 scripts/fuzz starts from."""
+import io
 import json
 import os
 import struct
 import subprocess
+import zipfile
 
 HOUSE = """o house
 v 0 0 0\nv 8 0 0\nv 8 6 0\nv 0 6 0\nv 0 0 5\nv 8 0 5\nv 8 6 5\nv 0 6 5\nv 0 3 7\nv 8 3 7
@@ -78,6 +80,11 @@ def make_seeds(colod, folder):
     whole = {'tileset.json': place, 'x.b3dm': b3dm, 'plan.geojson': plan}
     read_place = ['build', 'tileset.json', '-o', 'out', '--scene', 'scene', '--footprints', 'plan.geojson', *small]
     seeds['place'] = [(name, read_place, data, {n: d for n, d in whole.items() if n != name}) for name, data in whole.items()]
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, 'w', zipfile.ZIP_DEFLATED) as packed:
+        for name in ['tileset.json', 'x.b3dm']:
+            packed.writestr(zipfile.ZipInfo(name), whole[name], zipfile.ZIP_DEFLATED)
+    seeds['place'].append(('x.3tz', ['x.3tz' if word == 'tileset.json' else word for word in read_place], archive.getvalue(), {'plan.geojson': plan}))
     run('segment', 'house.obj', '-o', 'house.colod', '--ns', '12', '--nr', '8', '--quiet')
     run('analyze', 'house.colod')
     run('mesh', 'house.colod', '--quiet')

@@ -23,6 +23,7 @@
 #include "plan/cell_lock.h"
 #include "plan_options.h"
 #include "publish/report_pictures.h"
+#include "read/archive.h"
 #include "store/store.h"
 
 namespace colod::cli {
@@ -84,6 +85,14 @@ void segment_cells(const StageArguments& a, const Log& log, Scene& problems) {
   });
 }
 
+/// Later stages make textures of the images that a scene file names, which were gone by then.
+void refuse_archive(const std::string& input) {
+  if (is_archive(input))
+    throw Error(Stage::kUsage, input,
+                "is unpacked for one run alone, and later stages need its images: `unzip IN.3tz -d "
+                "DIR` unpacks it, then DIR is the input");
+}
+
 int segment(const StageArguments& a) {
   limit_threads(a.run.threads);
   const Log log = a.run.log();
@@ -92,6 +101,7 @@ int segment(const StageArguments& a) {
     segment_cells(a, log, problems);
   } else {
     validate(a.options);
+    for (const std::string& input : a.inputs) refuse_archive(input);
     const Inputs found =
         open_inputs(a.inputs, a.read, a.choice, {}, [&](const Message& m) { log.message(m); });
     check_cost(a.options, found.inventory.building_count());

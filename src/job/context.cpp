@@ -135,10 +135,11 @@ class Nodes {
     }
   }
 
-  std::shared_ptr<const Context> take() {
+  std::shared_ptr<const Context> take(const Parted& scene) {
     auto context = std::make_shared<Context>();
     context->nodes = std::move(nodes_);
     context->read = [read = std::move(read_)](std::size_t i) { return read[i](); };
+    context->shown = [scene](const std::string& text) { return shown(scene->tiles.tree(), text); };
     return context;
   }
 
@@ -270,7 +271,7 @@ std::shared_ptr<const Context> context_of(const Parted& scene, ContextMode mode,
   } else {
     add_own_chain(scene, ground, nodes);
   }
-  return nodes.take();
+  return nodes.take(scene);
 }
 
 }  // namespace colod

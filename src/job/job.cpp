@@ -49,7 +49,7 @@ Product work(const Job& job, const JobHooks& hooks, const Beside& beside, std::s
               .is_cancelled = hooks.is_cancelled};
   if (!beside.truth.empty()) inner.observers.push_back(judge.observer());
   if (!job.output.has_no_page) inner.observers.push_back(gallery.observer());
-  Product product{build(inner, beside.prior ? &*beside.prior : nullptr), {}, nullptr};
+  Product product{build(inner, beside.prior ? &*beside.prior : nullptr), {}, nullptr, nullptr};
   if (!beside.truth.empty())
     product.scene.consistency = tally_parts(judge.parts(), job.options.layers);
   decide_switches(product.scene, job.options.layers, switch_options(job.output), beside.sights);
@@ -66,15 +66,18 @@ Product run_job(const std::vector<std::string>& inputs, const Job& job, const Jo
       inputs, job.read, job.scene,
       {job.output.crs, job.output.origin, job.output.target_sse, job.output.switching.pixel_error},
       hooks.tell);
-  return work(job, hooks, beside, found.inventory.building_count(),
-              [&](const Hooks& inner, const Prior* prior) {
-                Scene scene = build_scene(found.inventory, found.read, job.options, inner, prior);
-                scene.attributes = found.attributes;
-                scene.context = found.context;
-                scene.classes = found.classes;
-                scene.found_footprints = found.found_footprints;
-                return scene;
-              });
+  Product product = work(job, hooks, beside, found.inventory.building_count(),
+                         [&](const Hooks& inner, const Prior* prior) {
+                           Scene scene =
+                               build_scene(found.inventory, found.read, job.options, inner, prior);
+                           scene.attributes = found.attributes;
+                           scene.context = found.context;
+                           scene.classes = found.classes;
+                           scene.found_footprints = found.found_footprints;
+                           return scene;
+                         });
+  if (found.scene) product.archive = found.scene->tiles.tree().archive;
+  return product;
 }
 
 Product run_job(const std::vector<NamedArrays>& buildings, const Job& job, const JobHooks& hooks) {

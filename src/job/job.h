@@ -10,7 +10,7 @@
 #include "core/options.h"
 #include "pipeline/pipeline.h"
 #include "publish/outputs.h"
-#include "read/read.h"
+#include "read/archive.h"
 #include "scene_choice.h"
 
 namespace colod {
@@ -34,9 +34,10 @@ struct JobHooks {
 };
 
 struct Product {
-  Scene scene;                   ///< its switches are decided
-  Pictures pictures;             ///< for report.html; none with has_no_page
-  std::unique_ptr<Depot> depot;  ///< where the sources lie, which textures are made of
+  Scene scene;                              ///< its switches are decided
+  Pictures pictures;                        ///< for report.html; none with has_no_page
+  std::unique_ptr<Depot> depot;             ///< where the sources lie, which textures are made of
+  std::shared_ptr<const Unpacked> archive;  ///< where their images lie; null: in files of their own
 };
 
 /// The buildings of files and folders, or of one scene. Throws Error{kUsage} or Error{kInput} for

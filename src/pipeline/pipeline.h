@@ -131,7 +131,9 @@ struct Context {
     bool is_added = false;       ///< its children join what it shows instead of replacing it
   };
   std::vector<Node> nodes;
-  std::function<Source(std::size_t node)> read;  ///< what it shows; thread-safe
+  std::function<Source(std::size_t node)> read;                    ///< what it shows; thread-safe
+  std::function<std::string(const std::string& text)> shown = {};  ///< a text that names files, for
+                                                                   ///< the user; none: as it is
 };
 
 /// How much of a place's plan is of one class.

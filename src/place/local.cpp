@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "read/archive.h"
 
 namespace colod {
 
@@ -50,6 +51,25 @@ std::optional<Vec3> middle_of(const Json& tile) {
   const auto transform = list(tile, "transform", 16);
   if (!transform) return middle;
   return (Eigen::Map<const Eigen::Matrix4d>(transform->data()) * middle.homogeneous()).head<3>();
+}
+
+/// Of what is in a tileset.json that `path` holds.
+std::optional<Georeference> place_of_tileset(std::istream& in, const std::string& path) {
+  // The tiles below the root are not needed: a tileset may list hundreds of thousands.
+  const Json json = Json::parse(
+      in,
+      [](int depth, Json::parse_event_t event, Json& key) {
+        return !(depth == 2 && event == Json::parse_event_t::key && key == "children");
+      },
+      false);
+  if (!json.is_object() || !json.contains("root") || !json["root"].is_object()) return {};
+  const std::optional<Vec3> middle = middle_of(json["root"]);
+  if (!middle || !(middle->norm() > kLowest && middle->norm() < kHighest)) return {};
+  const Vec3 place = ecef_to_geodetic(*middle);
+  std::ostringstream crs;
+  crs << std::setprecision(12) << "ENU:" << place.x() / kDegree << ',' << place.y() / kDegree << ','
+      << std::setprecision(8) << place.z();
+  return Georeference{crs.str(), Vec3::Zero(), path};
 }
 
 }  // namespace
@@ -100,23 +120,14 @@ Eigen::Matrix4d local_from_ecef(const Georeference& g) {
 
 std::optional<Georeference> georeference_of_tileset(const std::string& path) {
   std::error_code error;
-  if (fs::path(path).extension() != ".json" || !fs::is_regular_file(path, error)) return {};
+  if (!fs::is_regular_file(path, error)) return {};
+  if (is_archive(path)) {
+    std::istringstream in(read_archived(path, "tileset.json").value_or(""));
+    return place_of_tileset(in, path);
+  }
+  if (fs::path(path).extension() != ".json") return {};
   std::ifstream in(path, std::ios::binary);
-  // The tiles below the root are not needed: a tileset may list hundreds of thousands.
-  const Json json = Json::parse(
-      in,
-      [](int depth, Json::parse_event_t event, Json& key) {
-        return !(depth == 2 && event == Json::parse_event_t::key && key == "children");
-      },
-      false);
-  if (!json.is_object() || !json.contains("root") || !json["root"].is_object()) return {};
-  const std::optional<Vec3> middle = middle_of(json["root"]);
-  if (!middle || !(middle->norm() > kLowest && middle->norm() < kHighest)) return {};
-  const Vec3 place = ecef_to_geodetic(*middle);
-  std::ostringstream crs;
-  crs << std::setprecision(12) << "ENU:" << place.x() / kDegree << ',' << place.y() / kDegree << ','
-      << std::setprecision(8) << place.z();
-  return Georeference{crs.str(), Vec3::Zero(), path};
+  return place_of_tileset(in, path);
 }
 
 }  // namespace colod

@@ -33,17 +33,17 @@ struct EarthMap {
 std::optional<Georeference> georeference_from_options(const std::string& crs,
                                                       const std::string& origin);
 
-/// Where a tileset.json says that its tiles are, when that is on Earth (ECEF): axes east, north and
-/// up about the middle of its root's bounding volume. Nothing for a local one, and for what is no
-/// tileset.
+/// Where a tileset.json, alone or in a .3tz, says that its tiles are, when that is on Earth (ECEF):
+/// axes east, north and up about the middle of its root's bounding volume. Nothing for a local one,
+/// and for what is no tileset. Throws Error{kInput} for a .3tz that is no archive.
 std::optional<Georeference> georeference_of_tileset(const std::string& path);
 
 /// ECEF → the axes of a georeference "ENU:latitude,longitude,height", in metres.
 Eigen::Matrix4d local_from_ecef(const Georeference& georeference);
 
-/// From a tileset.json itself, else from files beside an input file or folder: metadata.xml (SRS,
-/// SRSOrigin; also above folders called Data and Tile_*), odm_georeferencing_model_geo.txt (from
-/// folders odm_* also in
+/// From a tileset.json or .3tz itself, else from files beside an input file or folder: metadata.xml
+/// (SRS, SRSOrigin; also above folders called Data and Tile_*), odm_georeferencing_model_geo.txt
+/// (from folders odm_* also in
 /// ../odm_georeferencing), Pix4D's
 /// *_offset.xyz with its .prj. Nothing where there is none. Throws Error{kInput} naming a file that
 /// is there and cannot be understood.

@@ -186,7 +186,8 @@ void tell_failures(const ContextFailures& failures, Scene& scene) {
   std::set<std::pair<std::string, std::string>> told;
   for (const ReadFailure& f : scene.failures) told.insert({f.path, f.message});
   for (std::size_t i = 0; i < failures.size(); ++i)
-    for (const ReadFailure& f : failures[i]) {
+    for (ReadFailure f : failures[i]) {
+      if (const auto& shown = scene.context->shown) f = {shown(f.path), shown(f.message)};
       if (!told.insert({f.path, f.message}).second) continue;
       if (is_finest[i] || scene.context->nodes[i].is_added)
         scene.failures.push_back(f);

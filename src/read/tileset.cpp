@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "archive.h"
 #include "files.h"
 #include "implicit.h"
 #include "look.h"
@@ -23,8 +24,9 @@ using Matrix = Eigen::Matrix4d;
 namespace {
 
 constexpr std::size_t kMostTiles = 2'000'000;
-constexpr int kDeepest = 2000;   // nested lists and objects of one tileset: 3 a level of tiles
-constexpr int kMostNested = 64;  // tilesets within tilesets
+constexpr int kDeepest = 2000;       // nested lists and objects of one tileset: 3 a level of tiles
+constexpr int kMostNested = 64;      // tilesets within tilesets
+constexpr std::size_t kHead = 4096;  // bytes of a tileset.json that tell what it is
 
 Json parse(const std::string& path, const ReadOptions& options) {
   const std::string text = mesh_io::as_text(mesh_io::read_bytes(path, options.input_memory));
@@ -82,6 +84,9 @@ std::vector<std::string> uris_of(const Json& tile) {
   return out;
 }
 
+/// Whether a tileset.json that begins like this was written by colod.
+bool is_own(const std::string& head) { return head.find("\"generator\": \"colod\"") != head.npos; }
+
 bool is_within(const fs::path& folder, const fs::path& file) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
          folder.end();
@@ -89,7 +94,9 @@ bool is_within(const fs::path& folder, const fs::path& file) {
 
 class TreeReader {
  public:
-  TreeReader(const std::string& path, const ReadOptions& options) : options_(options) {
+  /// `archive`: that its files were unpacked from, or nullptr.
+  TreeReader(const std::string& path, const ReadOptions& options, Unpacked* archive)
+      : options_(options), archive_(archive) {
     tree_.path = path;
     tree_.is_tileset = true;
     folder_ = fs::canonical(fs::absolute(path).parent_path());
@@ -203,11 +210,17 @@ class TreeReader {
     else if (error || !is_within(folder_, file))
       cause = "names " + shown + ", outside of the scene's folder: it is not read";
     else if (!fs::is_regular_file(file, error))
-      cause = "its tile " + shown + " is missing";
+      cause = "its tile " + shown + " " + fault_of(file);
     else
       return file;
     fail(path, cause, node);
     return {};
+  }
+
+  /// Why a file is not there.
+  std::string fault_of(const fs::path& file) {
+    const std::string fault = archive_ ? archive_->tell_fault(file.string()) : "";
+    return fault.empty() ? "is missing" : fault;
   }
 
   void add_content(const std::string& path, const std::string& uri, int node) {
@@ -318,11 +331,30 @@ class TreeReader {
   }
 
   const ReadOptions& options_;
+  Unpacked* archive_;
   fs::path folder_;  // that nothing leaves
   TileTree tree_;
   std::vector<Failure> failures_;
   std::vector<std::string> open_;  // tilesets from the first to the one in hand
 };
+
+/// The tileset of an archive, which is named instead of the folder that it lies in.
+TileTree list_archive(const std::string& input, const ReadOptions& options) {
+  const auto archive = std::make_shared<Unpacked>(input, options);
+  TileTree tree;
+  try {
+    tree = TreeReader(archive->tileset(), options, archive.get()).read();
+  } catch (const Error& e) {
+    throw Error(e.stage, archive->shown(e.item),
+                archive->shown(std::string(e.what()).substr(e.item.size() + 2)));
+  }
+  tree.path = input;
+  tree.archive = archive;
+  for (ReadFailure& f : tree.failures) f = {shown(tree, f.path), shown(tree, f.message)};
+  for (std::string& w : tree.warnings) w = shown(tree, std::move(w));
+  for (std::string& w : archive->untold()) tree.warnings.push_back(std::move(w));
+  return tree;
+}
 
 TileTree list_meshes(const std::string& input, const ReadOptions& options) {
   const bool is_folder = fs::is_directory(input);
@@ -380,17 +412,29 @@ mesh_io::RawFile read_content(const std::string& path, const ReadOptions& option
 
 }  // namespace
 
+std::string shown(const TileTree& tree, std::string text) {
+  return tree.archive ? tree.archive->shown(std::move(text)) : text;
+}
+
 bool is_tiled_scene(const std::string& input, std::string& why) {
   std::error_code error;
+  if (is_archive(input) && fs::is_regular_file(input, error)) {
+    why = "it is an archive of a tileset";
+    if (is_own(read_archived(input, "tileset.json").value_or("").substr(0, kHead)))
+      throw Error(
+          Stage::kInput, input,
+          "holds what colod itself wrote, several levels of each building: name the sources");
+    return true;
+  }
   fs::path file = input;
   if (fs::is_directory(input, error)) file = file / "tileset.json";
   if (mesh_io::lower(file.extension().string()) == ".json" && fs::is_regular_file(file, error)) {
-    std::string head(4096, '\0');
+    std::string head(kHead, '\0');
     std::ifstream(file, std::ios::binary).read(head.data(), static_cast<long>(head.size()));
     why = file.filename().string() + " is a tileset";
     const bool is_tileset =
         head.find("\"asset\"") != head.npos || head.find("\"geometricError\"") != head.npos;
-    return is_tileset && head.find("\"generator\": \"colod\"") == head.npos;
+    return is_tileset && !is_own(head);
   }
   fs::directory_iterator at(fs::path(input) / "Data", error);
   for (const fs::directory_iterator end; !error && at != end; at.increment(error)) {
@@ -411,8 +455,9 @@ TileTree list_tiles(const std::string& input, const ReadOptions& options) {
   if (fs::is_directory(input, error) && fs::is_regular_file(file / "tileset.json", error))
     file = file / "tileset.json";
   if (!fs::exists(file, error)) throw Error(Stage::kInput, input, "no such file or folder");
+  if (is_archive(input)) return list_archive(input, options);
   if (mesh_io::lower(file.extension().string()) == ".json")
-    return TreeReader(file.string(), options).read();
+    return TreeReader(file.string(), options, nullptr).read();
   return list_meshes(input, options);
 }
 

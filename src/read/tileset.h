@@ -2,12 +2,15 @@
 // a time, so that memory follows a tile and not the scene.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "read.h"
 
 namespace colod {
+
+class Unpacked;
 
 enum class TileUp { kY, kZ, kX };  ///< the axis of a tile's glTF that points up in the tile
 
@@ -24,18 +27,24 @@ struct TileNode {
 
 /// All tiles of a scene, none of which has been read.
 struct TileTree {
-  std::string path;                   ///< the tileset.json, or the folder
+  std::string path;                   ///< the tileset.json, the archive, or the folder
   std::vector<TileNode> nodes;        ///< parents before children; 0 is the root
   std::vector<ReadFailure> failures;  ///< tiles and tilesets that are missing or not allowed
   std::vector<std::string> warnings;
   bool is_tileset = false;  ///< else meshes in the scene's frame, each a tile of its own
+  std::shared_ptr<const Unpacked> archive;  ///< where contents lie while it lives; null: they are
+                                            ///< files of their own
 };
+
+/// A text for the user, with files of an archive named as they lie in it.
+std::string shown(const TileTree& tree, std::string text);
 
 /// A name that is safe as a file's, on any system: letters, digits, `-`, `_` and `.`.
 std::string safe_name(const std::string& name);
 
 /// Whether an INPUT is a scene by what it is: a tileset.json that colod did not write, a folder
-/// with one, or one with meshes in Data/Tile_*/. `why` says what tells it.
+/// with one, a .3tz, or a folder with meshes in Data/Tile_*/. `why` says what tells it. Throws
+/// Error{kInput} for a .3tz that colod wrote.
 bool is_tiled_scene(const std::string& input, std::string& why);
 
 /// Whether a file is a tile of 3D Tiles by its format, whatever it shows: b3dm.
@@ -43,8 +52,9 @@ bool is_tile_format(const std::string& path);
 
 /// 3D Tiles 1.0 and 1.1: external tilesets, transforms, content.url and content.uri, contents,
 /// `content: null`, implicit tiling, asset.gltfUpAxis. What lies outside the folder of the tileset
-/// that is named, and what leads back to itself, are failures of their own. Of another folder, or a
-/// mesh, each file is a tile. Throws Error{kInput} where there is nothing to read.
+/// that is named, and what leads back to itself, are failures of their own. A
+/// .3tz is unpacked (archive.h) and read as its tileset.json. Of another folder, or a mesh, each
+/// file is a tile. Throws Error{kInput} where there is nothing to read.
 TileTree list_tiles(const std::string& input, const ReadOptions& options = {});
 
 /// The nodes that together show all of the scene once: `coarser` levels above the tiles without

@@ -122,7 +122,8 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
   std::map<std::string, std::pair<std::size_t, std::string>> by_text;  // how often, first tile
   std::vector<Tile> good;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    if (!facts[i].problem.empty()) failures.push_back({tiles[i].content, facts[i].problem});
+    if (!facts[i].problem.empty())
+      failures.push_back({shown(tree, tiles[i].content), shown(tree, facts[i].problem)});
     for (const std::string& text : said[i]) {
       auto& [count, first] = by_text[text];
       if (count++ == 0) first = tiles[i].content;
@@ -136,7 +137,7 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
   tiles = std::move(good);
   for (const auto& [text, where] : by_text)
     warnings.push_back(
-        where.second + ": " + text +
+        shown(tree, where.second + ": " + text) +
         (where.first > 1 ? " (and " + std::to_string(where.first - 1) + " more tiles)" : ""));
 }
 
