@@ -51,7 +51,8 @@ constexpr Foreign kForeign[] = {
     {".skp", "SketchUp's own file is not read: its OBJ or glTF export converts it"},
     {".3dm", "Rhino's own file is not read: its OBJ or glTF export converts it"},
     {".zip", "an archive is not read: unpack it"},
-    {".3tz", "3tz holds a whole tileset: `colod build IN.3tz` takes it for a scene, `unzip IN.3tz -d DIR` "
+    {".3tz",
+     "3tz holds a whole tileset: `colod build IN.3tz` takes it for a scene, `unzip IN.3tz -d DIR` "
      "unpacks it for other commands"},
     {".osgb", "OSGB is not read: `osgconv IN.osgb OUT.obj` converts a tile"},
     {".i3dm", "i3dm (instances of models) is not read"},
