@@ -27,7 +27,7 @@ void put(std::string& out, T value) {
 }
 
 std::uint32_t crc32(const std::string& bytes) {
-  static const auto kTable = [] {
+  static const auto remainders = [] {
     std::array<std::uint32_t, 256> table{};
     for (std::uint32_t i = 0; i < 256; ++i) {
       std::uint32_t c = i;
@@ -37,7 +37,8 @@ std::uint32_t crc32(const std::string& bytes) {
     return table;
   }();
   std::uint32_t crc = ~0u;
-  for (const char c : bytes) crc = kTable[(crc ^ static_cast<unsigned char>(c)) & 255] ^ (crc >> 8);
+  for (const char c : bytes)
+    crc = remainders[(crc ^ static_cast<unsigned char>(c)) & 255] ^ (crc >> 8);
   return ~crc;
 }
 
