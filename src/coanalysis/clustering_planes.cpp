@@ -176,6 +176,20 @@ void add_hanging_walls(const Planes& planes, std::vector<char>& is_in) {
       is_in[p] = before[q] && hangs_from(planes.planes[p], planes.planes[q]);
 }
 
+// Roofs of a relief that cover much of the plan are on each layer: what has no plane of its own
+// there is covered by a neighbour's, run on over yards and wings.
+void add_large_roofs(const Planes& planes, std::vector<char>& is_in) {
+  if (!is_relief(planes)) return;
+  std::vector<double> covered;
+  double total = 0;
+  for (const Plane& p : planes.planes) {
+    covered.push_back(p.normal.z() > kUpright ? p.normal.z() * sane_area(p) : 0);
+    total += covered.back();
+  }
+  for (std::size_t p = 0; p < is_in.size(); ++p)
+    if (covered[p] > kRoofShare * total) is_in[p] = 1;
+}
+
 }  // namespace
 
 std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
@@ -192,6 +206,7 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
       is_in[p] = layer_of_segment[s] <= k && !(layer_of_segment[s] == 0 && is_out[p]);
       is_out[p] = 1;
     }
+  add_large_roofs(planes, is_in);
   add_hanging_walls(planes, is_in);
 
   std::vector<Box> boxes;

@@ -45,7 +45,7 @@ std::vector<char> opened(int columns, int rows, const std::vector<char>& is_in, 
 /// What a patch has around it.
 struct Shape {
   double border = 0, at_ground = 0, at_nothing = 0;  // metres
-  double half_width = 0;                             // metres, where it is widest
+  double half_width = 0;                             // metres, where it is widest, in whole cells
 };
 
 class Labeller {
@@ -143,7 +143,8 @@ class Labeller {
       const Patch& p = patches_[a];
       const Shape& s = shape[a];
       const bool is_rough = p.residual > std::max(kRough * noise_, kLeastRough);
-      const bool is_strip = s.half_width < kStrip && s.at_nothing > kStripShare * s.border;
+      const double strip = std::max(kStrip, kStripCells * f_.cell);
+      const bool is_strip = s.half_width < strip && s.at_nothing > kStripShare * s.border;
       const bool is_minor = p.area < kMinor * total;
       becomes[a] = static_cast<int>(a);
       if (is_strip && p.area < kStripArea * total) becomes[a] = kOutside;

@@ -141,6 +141,20 @@ TEST_CASE("what stands around is left out, and told") {
   }
 }
 
+TEST_CASE("a strip of next door at the mesh's end is left out, of a fine mesh and of a coarse one") {
+  for (const double edge : {0.4, 1.6}) {
+    INFO(edge);
+    const auto row = [](double x, double y) {  // a house whose party wall is x = 8
+      const bool is_in = std::abs(y) < 7 && x > -8;
+      return (is_in ? (x > 8 ? 12 : 6) : 0) + bump(x, y, 0.1);
+    };
+    const auto relief = find_relief(field(19.4, edge, row));
+    REQUIRE(relief);
+    for (const Relief::Part& p : relief->parts)
+      if (!p.is_wall && !p.rings.empty()) CHECK(p.offset < 9);
+  }
+}
+
 TEST_CASE("a low roof between higher neighbours is no ground") {
   const auto court = [](double x, double y) {
     const double roof = std::abs(x) < 7 ? 4 : 11;  // strips of next door on two sides
