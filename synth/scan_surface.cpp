@@ -23,7 +23,7 @@ namespace colod::synth {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Triangulation = CGAL::Delaunay_triangulation_3<
+using Tetrahedra = CGAL::Delaunay_triangulation_3<
     Kernel,
     CGAL::Triangulation_data_structure_3<CGAL::Triangulation_vertex_base_with_info_3<int, Kernel>,
                                          CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
@@ -83,8 +83,8 @@ std::vector<Candidate> find_candidates(const std::vector<Sample>& samples, doubl
     const Vec3& p = samples[i].point;
     points.push_back({{p.x(), p.y(), p.z()}, i});
   }
-  const Triangulation triangulation(points.begin(), points.end());
-  const auto apex = [&](const Triangulation::Facet& facet) {
+  const Tetrahedra triangulation(points.begin(), points.end());
+  const auto apex = [&](const Tetrahedra::Facet& facet) {
     const auto vertex = facet.first->vertex(facet.second);
     return triangulation.is_infinite(vertex) ? -1 : vertex->info();
   };

@@ -73,6 +73,10 @@ constexpr double kLeastLevel = 15;  // m²
 constexpr double kWall = 1.2;       // metres that a roof's rim steps down
 constexpr double kRoofRim = 0.65;   // of its steps that go down: a terrace has as many that go up
 constexpr double kDropping = 0.5;  // of the rim of a square of its area: where a roof ends it drops
+constexpr double kLeanBlock = 25;  // metres: most hold a piece of street or yard
+constexpr double kLeanReach = 2;   // metres over the plane from which on a block counts little
+constexpr int kLeanRounds = 8;
+constexpr double kLeastLean = 0.08;  // metres a metre
 
 }  // namespace colod::parameters::terrain
 

@@ -1,6 +1,7 @@
 // Based on: progressive densification (P. Axelsson, 2000) over a pyramid of block minima; gaps are
 // filled by push and pull (S. Gortler et al., The Lumigraph, 1996).
-// Differs: what was taken for ground and is bounded by steps downward is given up again.
+// Differs: a place that leans as a whole is set level first; what was taken for ground and is
+// bounded by steps downward is given up again.
 #include "terrain.h"
 
 #include <algorithm>
@@ -195,10 +196,54 @@ class Levels {
   std::vector<char>& is_ground_;
 };
 
+/// Heights a + b · x + c · y over a grid's cells.
+Vec3 fitted_plane(const Grid& grid, const Vec3& before, double reach) {
+  Eigen::Matrix3d squares = 1e-9 * Eigen::Matrix3d::Identity();
+  Vec3 sums = Vec3::Zero();
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      const float z = grid.at(x, y);
+      if (std::isnan(z)) continue;
+      const Vec3 at(1, x, y);
+      const double above = std::max(0.0, z - before.dot(at)) / reach;
+      const double weight = 1 / (1 + above * above);
+      squares += weight * at * at.transpose();
+      sums += weight * z * at;
+    }
+  return squares.ldlt().solve(sums);
+}
+
+/// How the whole place leans, by the lowest heights of its blocks: of a slope's blocks the lowest
+/// places lie at their lower ends, which would be taken for the ground of all of a block. What
+/// stands above, as blocks without any ground do, counts little. What leans little is level enough,
+/// or terraces.
+Vec3 lean_of(Grid least, double cell) {
+  double side = cell;
+  for (; side < kLeanBlock; side *= 2)
+    least = halved(least, [](const std::vector<float>& four) {
+      return *std::min_element(four.begin(), four.end());
+    });
+  Vec3 plane = fitted_plane(least, Vec3::Zero(), 1e9);
+  for (int i = 0; i < kLeanRounds; ++i) plane = fitted_plane(least, plane, kLeanReach);
+  if (plane.tail<2>().norm() < kLeastLean * side) return Vec3::Zero();
+  return Vec3(0, plane[1] * cell / side, plane[2] * cell / side);
+}
+
+/// Adds what a plane has at each cell, so many times.
+void tilt(std::vector<float>& z, int width, const Vec3& plane, double times) {
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const auto w = static_cast<std::size_t>(width);
+    z[i] += static_cast<float>(
+        times * (plane[1] * static_cast<double>(i % w) + plane[2] * static_cast<double>(i / w)));
+  }
+}
+
 }  // namespace
 
 std::vector<float> find_terrain(const HeightMap& map) {
   std::vector<Grid> least = {calmed(map)};
+  const Vec3 lean = lean_of(least[0], map.cell);
+  tilt(least[0].z, map.width, lean, -1);
   std::vector<double> side = {map.cell};
   while (side.back() < kWidest && std::min(least.back().width, least.back().height) > 2) {
     least.push_back(halved(least.back(), [](const std::vector<float>& four) {
@@ -208,10 +253,10 @@ std::vector<float> find_terrain(const HeightMap& map) {
   }
   Grid ground = extreme(extreme(filled(least.back()), true), false);
   for (std::size_t k = least.size() - 1; k-- > 0;) ground = refined(least[k], ground, side[k]);
-  const Grid& top = least[0];
   std::vector<char> is_ground(map.size(), 0);
   for (std::size_t i = 0; i < is_ground.size(); ++i)
-    is_ground[i] = top.z[i] - ground.z[i] < kOnGround;
+    is_ground[i] = least[0].z[i] - ground.z[i] < kOnGround;
+  const Grid top = calmed(map);
   Levels levels(top, map.cell, is_ground);
   levels.join_hills();
   levels.give_up_roofs();

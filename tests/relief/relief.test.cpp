@@ -141,7 +141,8 @@ TEST_CASE("what stands around is left out, and told") {
   }
 }
 
-TEST_CASE("a strip of next door at the mesh's end is left out, of a fine mesh and of a coarse one") {
+TEST_CASE(
+    "a strip of next door at the mesh's end is left out, of a fine mesh and of a coarse one") {
   for (const double edge : {0.4, 1.6}) {
     INFO(edge);
     const auto row = [](double x, double y) {  // a house whose party wall is x = 8
