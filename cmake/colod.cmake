@@ -44,6 +44,18 @@ function(colod_together target)
   endif()
 endfunction()
 
+# Links a library if it was found; else <source>_none.cpp, which says that it is lacking, stands for <source>.cpp.
+function(colod_optional target is_found library source)
+  get_target_property(sources ${target} SOURCES)
+  if(is_found)
+    list(FILTER sources EXCLUDE REGEX "${source}_none\\.cpp$")
+    target_link_libraries(${target} PRIVATE ${library})
+  else()
+    list(FILTER sources EXCLUDE REGEX "${source}\\.cpp$")
+  endif()
+  set_target_properties(${target} PROPERTIES SOURCES "${sources}")
+endfunction()
+
 # A static library that the shared one is made of: it can be moved, and shows nothing of itself.
 function(colod_part target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
