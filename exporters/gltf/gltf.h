@@ -11,18 +11,13 @@
 #include <vector>
 
 #include "draco.h"
+#include "exporters/bytes.h"
 #include "exporters/exporter.h"
 
 namespace colod {
 
 /// Of the bound on positions, in a finest layer: a rounding that shows only close by.
 constexpr double kFinestShare = 0.3;
-
-/// A number's bytes, little endian as all hosts are.
-template <typename T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 /// A growing document: JSON and the BIN chunk it points into.
 struct GltfDocument {

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "exporters/bytes.h"
 
 namespace colod {
 
@@ -20,11 +21,6 @@ constexpr std::uint64_t k32Bits = 0xFFFFFFFF, k16Bits = 0xFFFF;
 constexpr std::uint16_t kVersion = 20, kVersion64 = 45;
 constexpr std::uint16_t kUtf8Names = 1 << 11;
 constexpr std::uint16_t kNoTime = 0, kFirstDay = 0x21;  // 1980-01-01
-
-template <typename T>
-void put(std::string& out, T value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::uint32_t crc32(const std::string& bytes) {
   static const auto remainders = [] {

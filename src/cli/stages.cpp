@@ -25,6 +25,7 @@
 #include "publish/report_pictures.h"
 #include "read/archive.h"
 #include "store/store.h"
+#include "update_analysis.h"
 
 namespace colod::cli {
 namespace {
@@ -190,12 +191,25 @@ std::vector<std::string> scene_files(const StageArguments& a, Locks* locks = nul
   return files;
 }
 
+/// The scene files that an analysis is of, nobody else's meanwhile.
+struct Analysed {
+  Locks locks;
+  std::vector<std::string> files;
+  std::vector<Store> stores;
+};
+
+Analysed open_analysed(const StageArguments& a) {
+  Analysed out;
+  out.files = scene_files(a, &out.locks);
+  out.stores = open_all(out.files);
+  check_same_rules(out.stores, out.files);
+  return out;
+}
+
 int analyze(const StageArguments& a) {
   limit_threads(a.run.threads);
-  Locks locks;
-  const std::vector<std::string> files = scene_files(a, &locks);
-  std::vector<Store> stores = open_all(files);
-  check_same_rules(stores, files);
+  Analysed opened = open_analysed(a);
+  std::vector<Store>& stores = opened.stores;
   std::vector<std::size_t> file_of;
   Scene scene = read_scene(stores, file_of);
   Options options = stores.front().options();
@@ -208,87 +222,12 @@ int analyze(const StageArguments& a) {
   return 0;
 }
 
-/// Scene files that were analysed together, some of whose buildings may be newer.
-class Update {
- public:
-  Update(const std::vector<std::string>& files, std::vector<Store>& stores)
-      : stores_(stores), options_(stores.front().options()) {
-    scene_ = read_scene(stores, file_of_);
-    for (std::size_t f = 0; f < files.size(); ++f) {
-      stores[f].get_placed_later(scene_);
-      if (!stores[f].is_analysed()) unanalysed_.insert(f);
-    }
-    prior_.layers = options_.layers;
-    for (std::size_t i = 0; i < scene_.buildings.size(); ++i) sort_in(i, files);
-    if (prior_.buildings.empty())
-      throw Error(Stage::kInput, files.front(),
-                  "nothing of an analysis is left to go by: run colod analyze without --update");
-  }
-
-  void run(const Log& log) {
-    Scene placed;
-    for (const std::size_t i : fresh_) placed.buildings.push_back(std::move(scene_.buildings[i]));
-    if (!fresh_.empty()) analyze_scene(placed, options_, &prior_);
-    std::map<std::size_t, std::set<std::string>> later;  // per file
-    for (std::size_t i = 0; i < fresh_.size(); ++i) {
-      const Building& b = placed.buildings[i];
-      stores_[file_of_[fresh_[i]]].put_layers_of_segments(b);
-      later[file_of_[fresh_[i]]].insert(b.source.name);
-      log.message({Level::kInfo, b.source.name + ": its " +
-                                     std::to_string(b.layer_of_segment.size()) +
-                                     " segments lie where those lie that they are like"});
-    }
-    if (fresh_.empty()) log.message({Level::kInfo, "nothing is new since the last analysis"});
-    keep_facts(later);
-  }
-
- private:
-  void sort_in(std::size_t i, const std::vector<std::string>& files) {
-    const Building& b = scene_.buildings[i];
-    const std::size_t file = file_of_[i];
-    if (b.descriptors.empty()) return;
-    if (!stores_[file].has_layers_of_segments(b.source.name)) return fresh_.push_back(i);
-    if (unanalysed_.contains(file))
-      throw Error(
-          Stage::kInput, files[file],
-          "has other options than when it was analysed: run colod analyze without --update");
-    if (!scene_.placed_later.contains(b.source.name))
-      prior_.buildings.push_back({b.descriptors, b.layer_of_segment});
-  }
-
-  /// What the analysis told stays; a file without it gets it.
-  void keep_facts(const std::map<std::size_t, std::set<std::string>>& later) {
-    for (std::size_t f = 0; f < stores_.size() && !unanalysed_.empty(); ++f) {
-      if (unanalysed_.contains(f)) continue;
-      Scene facts;
-      stores_[f].get_coanalysis(facts);
-      for (const std::size_t other : unanalysed_) stores_[other].put_coanalysis(facts);
-      break;
-    }
-    for (const auto& [file, names] : later) {
-      Scene before;
-      stores_[file].get_placed_later(before);
-      before.placed_later.insert(names.begin(), names.end());
-      stores_[file].put_placed_later(before.placed_later);
-    }
-  }
-
-  std::vector<Store>& stores_;
-  Options options_;
-  Scene scene_;
-  Prior prior_;                       // what was analysed together
-  std::vector<std::size_t> file_of_;  // per building
-  std::set<std::size_t> unanalysed_;  // files
-  std::vector<std::size_t> fresh_;    // buildings
-};
-
 int update(const StageArguments& a) {
   limit_threads(a.run.threads);
-  Locks locks;
-  const std::vector<std::string> files = scene_files(a, &locks);
-  std::vector<Store> stores = open_all(files);
-  check_same_rules(stores, files);
-  Update(files, stores).run(a.run.log());
+  Analysed opened = open_analysed(a);
+  std::vector<std::size_t> file_of;
+  Scene scene = read_scene(opened.stores, file_of);
+  update_analysis(opened.files, opened.stores, std::move(scene), std::move(file_of), a.run.log());
   return 0;
 }
 

@@ -125,9 +125,8 @@ std::string fault_of(const unz_file_info64& info, std::uint64_t most_bytes) {
   if (info.flag & kEncrypted) return "is encrypted, which is not read";
   const unsigned long method = info.compression_method;
   if (method == 93 || method == 20)
-    return "is packed with Zstandard, which is not read: `bsdtar -xf IN.3tz -C DIR` (libarchive "
-           "3.6 "
-           "or newer) unpacks it, then DIR is the input";
+    return "is packed with Zstandard, which is not read: `bsdtar -xf IN.3tz -C DIR` "
+           "(libarchive 3.6 or newer) unpacks it, then DIR is the input";
   if (method != 0 && method != Z_DEFLATED)
     return "is packed by method " + std::to_string(method) +
            ", which is not read: stored and deflate are";
