@@ -35,7 +35,11 @@ function(colod_room name)
 endfunction()
 
 # Compiles these sources of a target in one go, or ALL in batches, so that what they include is read and instantiated once.
+# A batch's sources are no main file for the compiler, which then warns of types that a class keeps to its own source.
 function(colod_together target)
+  if(ARGN AND COLOD_UNITY)
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
   if("${ARGN}" STREQUAL "ALL")
     set_target_properties(${target} PROPERTIES UNITY_BUILD ${COLOD_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   elseif(ARGN)

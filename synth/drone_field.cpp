@@ -16,9 +16,10 @@ namespace {
 // Set so that edges, residuals and leaning walls are those of real height fields with edges of 0.4
 // m.
 constexpr double kSpacing = 0.8;  // of the median edge, which diagonals and walls lengthen
-constexpr double kJitter = 0.24;  // of the spacing, to both sides; from 0.25 on triangles turn over
+constexpr double kSidestep =
+    0.24;                         // of the spacing, to both sides; from 0.25 on triangles turn over
 constexpr double kAstray = 0.5;   // of the spacing that a height comes from beside its place
-constexpr double kBlur = 0.42;    // of a place's height that its four neighbours decide
+constexpr double kEvened = 0.42;  // of a place's height that its four neighbours decide
 
 struct Grid {
   int columns, rows;
@@ -36,8 +37,8 @@ void blur(Mesh& mesh, const Grid& grid) {
             .vertices[grid.at(std::clamp(i, 0, grid.columns - 1), std::clamp(k, 0, grid.rows - 1))]
             .z();
       };
-      height[grid.at(x, y)] = (1 - kBlur) * z(x, y) +
-                              kBlur / 4 * (z(x - 1, y) + z(x + 1, y) + z(x, y - 1) + z(x, y + 1));
+      height[grid.at(x, y)] = (1 - kEvened) * z(x, y) +
+                              kEvened / 4 * (z(x - 1, y) + z(x + 1, y) + z(x, y - 1) + z(x, y + 1));
     }
   for (std::size_t v = 0; v < height.size(); ++v) mesh.vertices[v].z() = height[v];
 }
@@ -75,8 +76,8 @@ Mesh make_field(const Mesh& soup, const Flight& flight, Random& random) {
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x)
       mesh.vertices.emplace_back(
-          box.min.x() + (x + 0.5 + random.uniform(-kJitter, kJitter)) * spacing,
-          box.min.y() + (y + 0.5 + random.uniform(-kJitter, kJitter)) * spacing, box.min.z());
+          box.min.x() + (x + 0.5 + random.uniform(-kSidestep, kSidestep)) * spacing,
+          box.min.y() + (y + 0.5 + random.uniform(-kSidestep, kSidestep)) * spacing, box.min.z());
   std::vector<Vec2> astray;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     astray.emplace_back(random.uniform(-kAstray, kAstray), random.uniform(-kAstray, kAstray));

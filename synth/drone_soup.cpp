@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSteep = 0.3;  // upright or nearly: |z| of a unit normal
 
-Vec3 unit_normal(const Mesh& mesh, const Face& f) { return face_cross(mesh, f).normalized(); }
+Vec3 normal_of_face(const Mesh& mesh, const Face& f) { return face_cross(mesh, f).normalized(); }
 
 void add_quad(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const int base = static_cast<int>(mesh.vertices.size());
@@ -31,27 +31,27 @@ double lean_towards(const Flight& flight, const Vec3& normal) {
 }
 
 /// How high the walls of one direction reach.
-struct Side {
+struct Facade {
   Vec3 normal;
   double top;
 };
 
-Side& side_of(std::vector<Side>& sides, const Vec3& normal) {
+Facade& side_of(std::vector<Facade>& sides, const Vec3& normal) {
   constexpr double kAlike = 0.95;  // cosine
-  for (Side& side : sides)
+  for (Facade& side : sides)
     if (side.normal.dot(normal) > kAlike) return side;
-  return sides.emplace_back(Side{normal, -std::numeric_limits<double>::infinity()});
+  return sides.emplace_back(Facade{normal, -std::numeric_limits<double>::infinity()});
 }
 
 /// Walls' vertices move outwards the more, the lower they are; corners with both their walls.
 std::vector<Vec3> leaned(const Mesh& building, const std::vector<int>& face_object,
                          const Flight& flight) {
-  std::vector<Side> sides;
+  std::vector<Facade> sides;
   std::vector<std::vector<Vec3>> walls(building.vertices.size());
   for (std::size_t f = 0; f < building.faces.size(); ++f) {
-    const Vec3 normal = unit_normal(building, building.faces[f]);
+    const Vec3 normal = normal_of_face(building, building.faces[f]);
     if (face_object[f] != kBody || std::abs(normal.z()) > kSteep) continue;
-    Side& side = side_of(sides, normal);
+    Facade& side = side_of(sides, normal);
     for (int v : building.faces[f]) {
       side.top = std::max(side.top, building.vertices[v].z());
       if (std::none_of(walls[v].begin(), walls[v].end(),

@@ -7,22 +7,16 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
+
+#include "core/bytes.h"
 
 namespace colod {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kQuality = 85;  // of JPEGs
-
-template <typename T>
-void append(std::string& bytes, const T& value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));  // little-endian hosts only
-  bytes.append(raw, sizeof(T));
-}
+constexpr int kQualityOfTiles = 85;  // of JPEGs
 
 void pad(std::string& bytes, std::size_t to, char with) {
   while (bytes.size() % to != 0) bytes += with;
@@ -43,9 +37,9 @@ Streams streams_of(const SynthTile& tile, const Vec3& center) {
       const std::array<float, 3> at = {static_cast<float>(p.x()), static_cast<float>(p.z()),
                                        static_cast<float>(-p.y())};
       out.box.extend(Vec3(at[0], at[1], at[2]));
-      for (const float v : at) append(out.positions, v);
-      append(out.uvs, tile.uvs[f][k].x());
-      append(out.uvs, tile.uvs[f][k].y());
+      for (const float v : at) put(out.positions, v);
+      put(out.uvs, tile.uvs[f][k].x());
+      put(out.uvs, tile.uvs[f][k].y());
       ++out.count;
     }
   return out;
@@ -89,11 +83,11 @@ std::string tile_glb(const SynthTile& tile) {
   std::string json = root.dump();
   pad(json, 4, ' ');
   std::string out = "glTF";
-  append(out, std::uint32_t{2});
-  append(out, static_cast<std::uint32_t>(28 + json.size() + a + b + image.size()));
-  append(out, static_cast<std::uint32_t>(json.size()));
+  put(out, std::uint32_t{2});
+  put(out, static_cast<std::uint32_t>(28 + json.size() + a + b + image.size()));
+  put(out, static_cast<std::uint32_t>(json.size()));
   out += "JSON" + json;
-  append(out, static_cast<std::uint32_t>(a + b + image.size()));
+  put(out, static_cast<std::uint32_t>(a + b + image.size()));
   out += std::string("BIN\0", 4) + s.positions + s.uvs + image;
   return out;
 }
@@ -145,7 +139,7 @@ std::string tile_mtl(const std::string& material, const std::string& image) {
 }
 
 std::string tile_jpeg(const SynthTile& tile) {
-  return encode_image(tile.picture, ImageFormat::kJpeg, kQuality);
+  return encode_image(tile.picture, ImageFormat::kJpeg, kQualityOfTiles);
 }
 
 std::string tile_b3dm(const SynthTile& tile) {
@@ -153,10 +147,10 @@ std::string tile_b3dm(const SynthTile& tile) {
   std::string glb = tile_glb(tile);
   pad(glb, 8, '\0');
   std::string out = "b3dm";
-  append(out, std::uint32_t{1});
-  append(out, static_cast<std::uint32_t>(28 + table.size() + glb.size()));
-  append(out, static_cast<std::uint32_t>(table.size()));
-  for (int i = 0; i < 3; ++i) append(out, std::uint32_t{0});
+  put(out, std::uint32_t{1});
+  put(out, static_cast<std::uint32_t>(28 + table.size() + glb.size()));
+  put(out, static_cast<std::uint32_t>(table.size()));
+  for (int i = 0; i < 3; ++i) put(out, std::uint32_t{0});
   return out + table + glb;
 }
 

@@ -18,8 +18,8 @@ namespace {
 constexpr double kUpright =
     0.42;  // a normal's z from which on a face belongs to a chart seen from above
 constexpr double kStillFaces = 0.2;  // cosine to its axis that a face of a chart has at least
-constexpr int kGutter = 2;           // texels
-constexpr int kLargest = 8192;       // texels
+constexpr int kGutterOfTile = 2;     // texels
+constexpr int kLargestTile = 8192;   // texels
 constexpr double kLook = 2.2;        // m before the surface from which a wall is looked at
 constexpr double kBehind = 2;        // m behind the surface up to which it is
 const Vec3 kSun = Vec3(-0.5, -0.42, 0.76).normalized();
@@ -236,7 +236,8 @@ struct Placed {
   double texel = 0.1;
 
   Vec2 texels(const Vec3& p) const {
-    return (chart.flat(p) - chart.corner) / texel + Vec2(rect.x + kGutter, rect.y + kGutter);
+    return (chart.flat(p) - chart.corner) / texel +
+           Vec2(rect.x + kGutterOfTile, rect.y + kGutterOfTile);
   }
 };
 
@@ -305,11 +306,11 @@ std::vector<Placed> place_charts(std::vector<Chart> charts, double texel,
     for (Placed& p : placed) {
       if (attempt > 0) p.texel *= 1.2;
       const auto side = [&](double metres) {
-        return (static_cast<int>(std::ceil(metres / p.texel)) + 2 * kGutter + 3) / 4 * 4;
+        return (static_cast<int>(std::ceil(metres / p.texel)) + 2 * kGutterOfTile + 3) / 4 * 4;
       };
       rects.push_back({side(p.chart.size.x()), side(p.chart.size.y())});
     }
-    size = pack_rects(rects, kLargest);
+    size = pack_rects(rects, kLargestTile);
     if (size[0] == 0) continue;
     for (std::size_t i = 0; i < placed.size(); ++i) placed[i].rect = rects[i];
     break;

@@ -11,7 +11,7 @@
 namespace colod::synth {
 namespace {
 
-constexpr int kMargin = 8;        // cells beyond the tile: what the surface's own rims need
+constexpr int kRim = 8;           // cells beyond the tile: what the surface's own rims need
 constexpr int kMelt = 3;          // cells: half of the gaps that pictures hardly look into
 constexpr double kFilled = 0.65;  // of such a gap's depth
 constexpr double kLeast = 1.5;    // m of depth from which on gaps are filled
@@ -35,9 +35,9 @@ Box box_of(const SkyView& view) {
 SkyView empty_view(const TilePlace& place) {
   SkyView view;
   view.cell = place.cell / 2;
-  view.x0 = 2 * place.i0 - kMargin, view.y0 = 2 * place.j0 - kMargin;
-  view.width = 2 * place.columns + 2 * kMargin;
-  view.height = 2 * place.rows + 2 * kMargin;
+  view.x0 = 2 * place.i0 - kRim, view.y0 = 2 * place.j0 - kRim;
+  view.width = 2 * place.columns + 2 * kRim;
+  view.height = 2 * place.rows + 2 * kRim;
   return view;
 }
 

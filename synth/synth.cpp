@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "bodies.h"
+#include "core/bytes.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "drone.h"
@@ -249,13 +249,6 @@ void check(const SynthOptions& options) {
 
 nlohmann::json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-template <typename T>
-void append(std::string& bytes, const T& value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));  // little-endian hosts only, as the PLY header says
-  bytes.append(raw, sizeof(T));
-}
-
 }  // namespace
 
 std::vector<SynthBuilding> make_neighbourhood(const SynthOptions& options) {
@@ -354,11 +347,11 @@ std::string synth_ply(const SynthBuilding& building) {
                       std::to_string(mesh.faces.size()) +
                       "\nproperty list uchar int vertex_indices\nproperty int object\nend_header\n";
   for (const Vec3& v : mesh.vertices)
-    for (int k = 0; k < 3; ++k) append(bytes, v[k]);
+    for (int k = 0; k < 3; ++k) put(bytes, v[k]);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    append(bytes, static_cast<std::uint8_t>(3));
-    for (int v : mesh.faces[f]) append(bytes, static_cast<std::int32_t>(v));
-    append(bytes, static_cast<std::int32_t>(building.source.face_object[f]));
+    put(bytes, static_cast<std::uint8_t>(3));
+    for (int v : mesh.faces[f]) put(bytes, static_cast<std::int32_t>(v));
+    put(bytes, static_cast<std::int32_t>(building.source.face_object[f]));
   }
   return bytes;
 }

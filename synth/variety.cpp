@@ -15,7 +15,7 @@
 namespace colod::synth {
 namespace {
 
-constexpr double kFirstFloor = 0.3;   // m above the highest ground
+constexpr double kGroundFloor = 0.3;  // m above the highest ground
 constexpr double kMostRise = 9;       // m of a roof over its eaves
 constexpr double kMostGround = 0.22;  // rise over run
 constexpr double kMostDrop = 3.5;     // m of ground along a house
@@ -46,7 +46,7 @@ Fitting draw_fitting(Random& r, const Pool& pool, int floors, double floor_heigh
   Fitting f;
   f.makes = pool.draw(r);
   f.floor_height = floor_height;
-  for (int i = 0; i < floors; ++i) f.floors.push_back(kFirstFloor + i * floor_height);
+  for (int i = 0; i < floors; ++i) f.floors.push_back(kGroundFloor + i * floor_height);
   f.spacing = r.uniform(1.8, 4.2);
   f.side_share = r.uniform(0, 1);
   f.sill = r.uniform(0.35, 1.0);
@@ -170,7 +170,7 @@ void fit_passage(House& house, const ShapedBody& body, const Fitting& fitting) {
       if (!front.is_street || b.normal.y() < 0.9 || !front.is_whole || !back.is_whole) continue;
       const double depth = b.origin.y() - f.origin.y(), width = house.random.uniform(2.2, 3.6);
       if (depth < 3 || depth > 14 || f.width() < width + 6) continue;
-      const double v = kFirstFloor - f.origin.z() - 0.15;
+      const double v = kGroundFloor - f.origin.z() - 0.15;
       const double height = fitting.floor_height - 0.3;
       if (add_passage(house, front.facet, back.facet, house.random.uniform(0.3, 0.7) * f.width(), v,
                       width, height))
@@ -189,7 +189,7 @@ House finish_house(House house, const DrawnPlan& drawn, const Kind& kind, Shaped
   Random& r = house.random;
   house.width = drawn.width, house.depth = drawn.depth;
   lay_ground(house, has_sloping_ground);
-  const double eaves = kFirstFloor + kind.floors * kind.floor_height + r.uniform(0.1, 0.7) +
+  const double eaves = kGroundFloor + kind.floors * kind.floor_height + r.uniform(0.1, 0.7) +
                        (roof.kind == RoofKind::kFlat && roof.overhang == 0 ? roof.parapet : 0);
   const auto blocks = kind.style == "row_house"
                           ? std::vector<Block>()

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/bytes.h"
 #include "draco.h"
-#include "exporters/bytes.h"
 #include "exporters/exporter.h"
 
 namespace colod {

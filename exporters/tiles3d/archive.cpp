@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/bytes.h"
 #include "core/error.h"
-#include "exporters/bytes.h"
 
 namespace colod {
 

@@ -240,10 +240,9 @@ std::vector<StandInBox> merge_stand_ins(std::vector<StandInBox> boxes, std::size
     double cost;
     std::size_t other;
   };
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   // The cheapest partner with a greater number, of each.
   const auto partner = [&](std::size_t i) {
-    Pair best{kNever, i};
+    Pair best{kInfinity, i};
     for (std::size_t j = i + 1; j < boxes.size(); ++j)
       if (const double c = cost(boxes[i], boxes[j]); c < best.cost) best = {c, j};
     return best;

@@ -2,10 +2,10 @@
 // Differs: squares that overlap, one colour each; the nearest to a facet is seen.
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "bake.h"
 #include "core/parallel.h"
+#include "core/point_tree.h"
 #include "parameters.h"
 
 namespace colod {
@@ -14,31 +14,17 @@ using namespace parameters::bake;
 
 namespace {
 
-/// Points as nanoflann wants to see them.
-struct Points {
-  const std::vector<Vec3>& all;
-  std::size_t kdtree_get_point_count() const { return all.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t d) const { return all[i][static_cast<int>(d)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>,
-                                                 Points, 3, std::uint32_t>;
-
 /// Metres, per point: the mean distance to its neighbours.
 std::vector<double> spacings(const std::vector<Vec3>& points) {
   constexpr std::size_t kLeaf = 16, kGrain = 256;
-  const Points seen{points};
-  Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf));
+  const PointsSeen seen{points};
+  PointTree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf));
   tree.buildIndex();
   std::vector<double> out(points.size(), 0);
   parallel_for(
       points.size(),
       [&](std::size_t i) {
-        std::array<std::uint32_t, kNeighbours + 1> found;
+        std::array<std::size_t, kNeighbours + 1> found;
         std::array<double, kNeighbours + 1> squared;
         const std::size_t n =
             tree.knnSearch(points[i].data(), found.size(), found.data(), squared.data());

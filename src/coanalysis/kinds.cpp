@@ -83,8 +83,7 @@ std::vector<int> part_in_runs(const std::vector<double>& falling, int k) {
     const double s = sum[b] - sum[a];
     return std::max(0.0, squares[b] - squares[a] - s * s / (b - a));
   };
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  std::vector<std::vector<double>> best(k + 1, std::vector<double>(n + 1, kInfinite));
+  std::vector<std::vector<double>> best(k + 1, std::vector<double>(n + 1, kInfinity));
   std::vector<std::vector<int>> begin(k + 1, std::vector<int>(n + 1, 0));
   best[0][0] = 0;
   for (int r = 1; r <= k; ++r)

@@ -22,10 +22,12 @@ using Vec3 = Eigen::Vector3d;
 using Face =
     std::array<int, 3>;  ///< counter-clockwise seen from outside; indices into the vertices
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// An axis-parallel box; empty when min > max.
 struct Box {
-  Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  Vec3 min = Vec3::Constant(kInfinity);
+  Vec3 max = Vec3::Constant(-kInfinity);
 
   bool is_empty() const { return !(min.array() <= max.array()).all(); }
   void extend(const Vec3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); }

@@ -22,7 +22,6 @@
 namespace colod {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Single precision in the traversal: what two distances may differ by and still be the same place.
 constexpr double kRelativeError = 2e-6;
 /// A triangle flatter than this (height over longest edge) is a line and is left out.

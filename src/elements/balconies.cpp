@@ -205,7 +205,7 @@ bool has_lid(const std::vector<Panel>& panels, const Balcony& balcony) {
   const Range a = balcony.floor.along(balcony.out), b = balcony.floor.along(side);
   return std::any_of(panels.begin(), panels.end(), [&](const Panel& p) {
     return p.plane->normal.z() > kUpright && p.height().high > balcony.floor.z + kLeastRail &&
-           p.height().low < balcony.height.high + kAbove &&
+           p.height().low < balcony.height.high + kAboveBalcony &&
            overlap(p.along(balcony.out), a) > 0.3 * a.length() &&
            overlap(p.along(side), b) > 0.3 * b.length();
   });

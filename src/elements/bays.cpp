@@ -30,11 +30,11 @@ std::optional<Sides> sides_of(const Panel& a, const Panel& b) {
   Sides s{&a, &b, beside(across), across, {}, {}, {}};
   if ((a.out + b.out).dot(s.forward) < 0) s.forward = -s.forward;
   s.width = {b.at(across), a.at(across)};
-  if (s.width.high - s.width.low < kLeastWidth || s.width.length() > kMostWidthOfBay)
+  if (s.width.high - s.width.low < kLeastWidthOfBay || s.width.length() > kMostWidthOfBay)
     return std::nullopt;
   const Range da = a.along(s.forward), db = b.along(s.forward);
-  if (overlap(da, db) < 0.7 * std::max(da.length(), db.length()) || overlap(da, db) < kLeastDepth ||
-      std::max(da.length(), db.length()) > kMostDepth)
+  if (overlap(da, db) < 0.7 * std::max(da.length(), db.length()) ||
+      overlap(da, db) < kLeastDepthOfBay || std::max(da.length(), db.length()) > kMostDepthOfBay)
     return std::nullopt;
   if (overlap(a.height(), b.height()) < kLeastHeight) return std::nullopt;
   s.depth = da, s.height = a.height();

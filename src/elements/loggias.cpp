@@ -132,7 +132,7 @@ std::optional<Loggia> find_loggia(const std::vector<Panel>& panels, const Gap& g
 }
 
 /// The faces that no plane shows.
-std::vector<Element::Rim> rims_of(const Gap& gap, const Loggia& loggia) {
+std::vector<Element::Rim> rims_of_loggia(const Gap& gap, const Loggia& loggia) {
   std::vector<Element::Rim> rims;
   const Range depth = {loggia.behind(), loggia.depth.high};
   if (!loggia.ceiling)
@@ -170,7 +170,7 @@ Element describe(const std::vector<Panel>& panels, const Gap& gap, const Loggia&
                  {loggia.forward, loggia.depth.high + 0.15},
                  {Vec3::UnitZ(), loggia.height.high + 0.02},
                  {-Vec3::UnitZ(), -loggia.height.low + 0.02}};
-  element.rims = rims_of(gap, loggia);
+  element.rims = rims_of_loggia(gap, loggia);
   if (loggia.ceiling) element.planes.push_back(loggia.ceiling->id);
   if (loggia.floor) element.planes.push_back(loggia.floor->id);
   element.bounds = element.planes;

@@ -12,8 +12,8 @@ constexpr double kSlab = 0.18;       // metres of a floor of which only one side
 constexpr double kMostBeyond =
     1.5;  // metres of a balcony beyond the part of its floor that is seen
 constexpr double kLeastFloor = 0.5, kLeastUnderside = 1;  // m²
-constexpr double kBelow = 1.0;  // metres below a floor: where nothing or a room is
-constexpr double kAbove = 0.3;  // metres above the walls: where a closed box has its lid
+constexpr double kBelow = 1.0;         // metres below a floor: where nothing or a room is
+constexpr double kAboveBalcony = 0.3;  // metres above the walls: where a closed box has its lid
 constexpr double kLeastRail = 0.4, kMostRail = 1.6;  // metres of a balcony's wall above its floor
 constexpr double kLeastRailAlone = 0.7;  // of one whose floor is not seen: lower boxes are ledges
 
@@ -32,8 +32,8 @@ constexpr double kLeastWalls = 0.6;     // of its area: walls with an opposite o
 namespace colod::parameters::elements::bays {
 
 constexpr double kAway = -0.4;  // cosine of its sides' normals at most: a splayed bay's cross
-constexpr double kLeastDepth = 0.35, kMostDepth = 1.8;  // metres
-constexpr double kLeastWidth = 1, kMostWidthOfBay = 5;
+constexpr double kLeastDepthOfBay = 0.35, kMostDepthOfBay = 1.8;  // metres
+constexpr double kLeastWidthOfBay = 1, kMostWidthOfBay = 5;
 constexpr double kLeastHeight = 1.8;
 constexpr double kMostFront = 25;  // m²
 
@@ -41,10 +41,11 @@ constexpr double kMostFront = 25;  // m²
 
 namespace colod::parameters::elements::windows {
 
-constexpr double kLeastDepth = 0.05, kMostDepth = 0.6;  // metres from the pane to the facade
-constexpr double kBeside = 0.12;  // metres: a reveal begins at the pane's edge
-constexpr double kAcross = 0.35;  // |cosine| of its normal to the pane's
-constexpr double kFacing = 0.7;   // cosine between a reveal's normal and the way inward
+constexpr double kLeastDepthOfWindow = 0.05,
+                 kMostDepthOfWindow = 0.6;  // metres from the pane to the facade
+constexpr double kBeside = 0.12;            // metres: a reveal begins at the pane's edge
+constexpr double kAcrossPane = 0.35;        // |cosine| of its normal to the pane's
+constexpr double kFacing = 0.7;             // cosine between a reveal's normal and the way inward
 constexpr double kLeastPane = 0.3, kMostPane = 16;  // m²: more is the back of a loggia
 constexpr std::size_t kReveals = 2;                 // at least
 

@@ -30,12 +30,13 @@ struct Pane {
 bool is_reveal(const Panel& p, const Pane& pane) {
   const Panel& wall = pane.panel;
   if (p.id == wall.id || p.plane->area > wall.plane->area ||
-      std::abs(p.plane->normal.dot(wall.out)) > kAcross || !is_near(p.box, wall.box, kBeside) ||
+      std::abs(p.plane->normal.dot(wall.out)) > kAcrossPane || !is_near(p.box, wall.box, kBeside) ||
       p.plane->normal.dot(wall.box.center() - p.plane->centroid) <= 0)
     return false;
   const Range depth = p.along(wall.out), width = p.along(pane.across), height = p.height();
-  return std::abs(depth.low - pane.back) < kBeside && depth.high > pane.back + kLeastDepth &&
-         depth.high < pane.back + kMostDepth && width.low > pane.width.low - 2 * kBeside &&
+  return std::abs(depth.low - pane.back) < kBeside &&
+         depth.high > pane.back + kLeastDepthOfWindow &&
+         depth.high < pane.back + kMostDepthOfWindow && width.low > pane.width.low - 2 * kBeside &&
          width.high < pane.width.high + 2 * kBeside && height.low > pane.height.low - 2 * kBeside &&
          height.high < pane.height.high + 2 * kBeside;
 }
@@ -48,8 +49,8 @@ bool is_within(const Range& inner, const Range& outer) {
 bool is_facade(const Panel& p, const Pane& pane) {
   const Panel& wall = pane.panel;
   const double before = p.at(wall.out) - pane.back;
-  if (!p.is_wall || p.out.dot(wall.out) < kAlike || before < 0.5 * kLeastDepth ||
-      before > kMostDepth)
+  if (!p.is_wall || p.out.dot(wall.out) < kAlike || before < 0.5 * kLeastDepthOfWindow ||
+      before > kMostDepthOfWindow)
     return false;
   const Range width = p.along(pane.across), height = p.height();
   return p.plane->area > wall.plane->area

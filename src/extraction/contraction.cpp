@@ -7,7 +7,6 @@
 #include "contraction.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <tuple>
 
@@ -22,7 +21,6 @@ using namespace parameters::extraction::contraction;
 using Edge = std::tuple<double, int, int>;
 
 constexpr int kPasses = 5;  // what one contraction forbids another may allow
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// No triangle may turn by more than 60 degrees from its facet; `cross`: product of its sides.
 bool keeps_direction(const Vec3& normal, const Vec3& cross) {
@@ -241,7 +239,7 @@ FacetSize measure_facet(const PolygonMesh& mesh, const PolygonMesh::Facet& facet
 }
 
 int contract_short_edges(PolygonMesh& mesh, double length) {
-  return contract(mesh, kNoLimit, [length](const PolygonMesh& m) {
+  return contract(mesh, kInfinity, [length](const PolygonMesh& m) {
     std::vector<Edge> edges;
     for (const Face& f : m.triangles) add_short_edges(m, f, length, edges);
     return edges;
@@ -259,8 +257,8 @@ int contract_narrow_facets(PolygonMesh& mesh, double width) {
   };
   int total = 0;
   for (double length = 2 * width; length <= kLongest * width; length *= 2)
-    total += contract_up_to(length, kNoLimit);
-  return total + contract_up_to(kNoLimit, width);
+    total += contract_up_to(length, kInfinity);
+  return total + contract_up_to(kInfinity, width);
 }
 
 }  // namespace colod

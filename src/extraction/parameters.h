@@ -18,13 +18,13 @@ constexpr double kMissed = 3e-4;        // mean distance that spares must make u
 
 namespace colod::parameters::extraction::walls {
 
-constexpr double kSimplify = 0.4;    // metres: how far a border may leave its line
-constexpr double kShortest = 1.5;    // metres of border that ask for a wall
-constexpr double kBeside = 0.5;      // metres beyond the border, where a roof would go on
-constexpr double kStep = 0.7;        // metres of height that still count as the same roof
-constexpr double kSupport = 0.8;     // metres between a border and the wall that carries it
-constexpr double kTogether = 0.35;   // metres between borders that share a wall
-constexpr double kParallel = 0.985;  // cosine of 10 degrees
+constexpr double kSimplify = 0.4;     // metres: how far a border may leave its line
+constexpr double kLeastBorder = 1.5;  // metres of border that ask for a wall
+constexpr double kBeside = 0.5;       // metres beyond the border, where a roof would go on
+constexpr double kSameRoof = 0.7;     // metres of height that still count as the same roof
+constexpr double kSupport = 0.8;      // metres between a border and the wall that carries it
+constexpr double kTogether = 0.35;    // metres between borders that share a wall
+constexpr double kParallel = 0.985;   // cosine of 10 degrees
 
 }  // namespace colod::parameters::extraction::walls
 
@@ -36,7 +36,7 @@ constexpr double kFar = 2;            // … nor nearer than that times the laye
 constexpr double kJoined = 0.1;       // metres, at least: a border nearer to something ends there
 constexpr double kLeastAcross = 0.5;  // cosine to a border's normal of that of a sheet that ends it
 constexpr double kLevel = 0.9;        // |z| of a normal: a step's …
-constexpr double kStep = 0.6;         // … metres above the foot: it stands on the ground
+constexpr double kAboveFoot = 0.6;    // … metres above the foot: it stands on the ground
 constexpr double kLift = 0.02;        // metres off a sheet
 constexpr double kLeastArea = 0.5;    // m² of a sheet …
 constexpr double kLeastShare = 1e-3;  // … and of all planes' area
@@ -44,7 +44,7 @@ constexpr double kLeastSeen = 0.3;    // of a sheet: on both sides
 constexpr double kSpacing = 0.12;     // metres between places that are looked at
 constexpr double kBend = 0.06;        // metres that a border may leave its outline
 constexpr double kInset = 0.06;       // metres from a border: where it is looked at
-constexpr double kShortest = 0.15;    // metres of a border's part that is cut
+constexpr double kLeastCut = 0.15;    // metres of a border's part that is cut
 
 }  // namespace colod::parameters::extraction::sheets
 
@@ -77,7 +77,7 @@ namespace colod::parameters::extraction::prune {
 
 constexpr double kSliver = 0.05;        // metres: facets narrower than this carry no plane
 constexpr double kLeastCovered = 0.15;  // of a plane's facets that must lie under its outline
-constexpr double kMostLost = 0.03;      // of the worthwhile planes' surface
+constexpr double kMostPruned = 0.03;    // of the worthwhile planes' surface
 
 }  // namespace colod::parameters::extraction::prune
 

@@ -86,7 +86,8 @@ bool keeps_surface(const Draft& before, const Draft& after, const Pruning& pruni
   double wanted = 0, reached = 0;
   for (std::size_t p = 0; p < planes; ++p)
     if (pruning.is_worthwhile[p]) wanted += had[p], reached += std::min(had[p], has[p]);
-  return !(reached < (1 - kMostLost) * wanted) && keeps_volume(before.shell.mesh, after.shell.mesh);
+  return !(reached < (1 - kMostPruned) * wanted) &&
+         keeps_volume(before.shell.mesh, after.shell.mesh);
 }
 
 }  // namespace colod

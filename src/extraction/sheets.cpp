@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/flat.h"
 #include "core/parallel.h"
@@ -24,13 +23,11 @@ using namespace parameters::extraction::sheets;
 
 constexpr double kMostPlaces = 20000;  // on a plane
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
 /// Tells the places of sheets.
 class Looker {
  public:
   explicit Looker(const SheetScene& scene)
-      : foot_(scene.planes.box.is_empty() ? -kNoLimit : scene.planes.box.min.z()),
+      : foot_(scene.planes.box.is_empty() ? -kInfinity : scene.planes.box.min.z()),
         far_(std::max(kLeastFar, kFar * scene.tolerance)),
         joined_(std::max(kJoined, 2 * far_)),
         surface_(scene.mesh.mesh()),
@@ -44,7 +41,7 @@ class Looker {
 
   /// Outside, and not on the surface.
   bool is_lost(const Vec3& x, const Vec3& normal) const {
-    if (std::abs(normal.z()) > kLevel && x.z() < foot_ + kStep) return false;
+    if (std::abs(normal.z()) > kLevel && x.z() < foot_ + kAboveFoot) return false;
     return !is_near(x, far_) && !surface_.first_hit(x, Vec3(0.36, 0.48, 0.8)).is_inside;
   }
 
@@ -61,7 +58,7 @@ class Looker {
 
   bool escapes(const Vec3& x, const Vec3& side) const {
     return std::any_of(around_.begin(), around_.end(), [&](const Vec3& d) {
-      return d.dot(side) > 0.05 && !outlines_.is_occluded(x + kLift * side, d, 1e-4, kNoLimit);
+      return d.dot(side) > 0.05 && !outlines_.is_occluded(x + kLift * side, d, 1e-4, kInfinity);
     });
   }
 
@@ -160,7 +157,7 @@ void find_ends(const Planes& planes, const Looker& looker, const std::vector<She
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vec3 &a = ring[i], &b = ring[(i + 1) % ring.size()];
       const double length = (b - a).norm();
-      if (length < kShortest) continue;
+      if (length < kLeastCut) continue;
       const Vec3 along = (b - a) / length, out = along.cross(sheet.normal);
       const int steps = std::max(2, static_cast<int>(length / kSpacing));
       double low = length, high = 0;
@@ -170,7 +167,7 @@ void find_ends(const Planes& planes, const Looker& looker, const std::vector<She
         if (!looker.is_lost(x - kInset * out, sheet.normal) || looker.is_joined(x)) continue;
         low = std::min(low, t), high = std::max(high, t);
       }
-      if (high - low < kShortest / 2) continue;
+      if (high - low < kLeastCut / 2) continue;
       const Vec3 from = a + low * along, to = a + high * along;
       sheet.ends.push_back(end_of(sheet, from, to, sheet_at(sheets, planes, sheet, from, to)));
     }

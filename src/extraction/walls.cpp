@@ -50,7 +50,7 @@ void add_borders(const Plane& roof, std::vector<Border>& borders) {
     for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
       const Vec3 &p = points[kept[i]], &q = points[kept[i + 1]];
       const double length = (q - p).head<2>().norm();
-      if (length >= kShortest)
+      if (length >= kLeastBorder)
         borders.push_back({p.head<2>(), q.head<2>(), std::max(p.z(), q.z()), length});
     }
   }
@@ -64,7 +64,7 @@ bool has_roof_beyond(const RayScene& rays, const Border& border, const Plane& ro
     const double z = std::abs(roof.normal.z()) > 1e-6
                          ? (roof.offset - roof.normal.head<2>().dot(p)) / roof.normal.z()
                          : border.z;
-    if (rays.first_hit({q.x(), q.y(), z - kStep - kBeside}, Vec3::UnitZ())) ++hits;
+    if (rays.first_hit({q.x(), q.y(), z - kSameRoof - kBeside}, Vec3::UnitZ())) ++hits;
   }
   return hits >= 2;
 }

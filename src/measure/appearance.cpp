@@ -17,12 +17,12 @@ namespace colod {
 namespace {
 
 constexpr int kDirections = 24;
-constexpr std::array<double, 3> kElevations_deg = {10, 35, 60};
-constexpr int kSamples = 3;         // along a pixel's side
-constexpr int kMargin = 12;         // pixels of sky: filters of pictures reach so far
+constexpr std::array<double, 3> kViewElevations_deg = {10, 35, 60};
+constexpr int kAcrossPixel = 3;     // along a pixel's side
+constexpr int kSkyPixels = 12;      // pixels of sky: filters of pictures reach so far
 constexpr double kMostSide = 4096;  // pixels
 constexpr double kGrazing = 0.1;    // cosine: what is seen flatter is as sharp as this
-const Light kSky = Light::Constant(0.2f);
+const Light kSkyLight = Light::Constant(0.2f);
 
 /// A mesh that rays find, with its look.
 struct Model {
@@ -46,20 +46,20 @@ bool look_along(const Model& model, const Vec3& from, const FarView& view, Lens&
 }
 
 ColorPicture draw(const Model& model, const FarView& view, double before) {
-  ColorPicture out{view.width / kSamples, view.height / kSamples, {}, {}};
+  ColorPicture out{view.width / kAcrossPixel, view.height / kAcrossPixel, {}, {}};
   const auto count = static_cast<std::size_t>(out.width) * out.height;
   out.linear.resize(count), out.coverage.resize(count);
-  constexpr float kShare = 1.0f / (kSamples * kSamples);
+  constexpr float kShare = 1.0f / (kAcrossPixel * kAcrossPixel);
   parallel_for(static_cast<std::size_t>(out.height), [&](std::size_t row) {
     Lens lens(model.look.cache());
     for (int x = 0; x < out.width; ++x) {
       Light sum = Light::Zero();
       int seen = 0;
-      for (int k = 0; k < kSamples * kSamples; ++k) {
-        const double u = x * kSamples + k % kSamples;
-        const double v = static_cast<double>(row) * kSamples + k / kSamples;
+      for (int k = 0; k < kAcrossPixel * kAcrossPixel; ++k) {
+        const double u = x * kAcrossPixel + k % kAcrossPixel;
+        const double v = static_cast<double>(row) * kAcrossPixel + k / kAcrossPixel;
         const Vec3 from = view.corner + view.sample * (u * view.right - v * view.up);
-        Light light = kSky;
+        Light light = kSkyLight;
         seen += look_along(model, from - before * view.forward, view, lens, light);
         sum += light;
       }
@@ -78,15 +78,15 @@ AppearanceDifference compare_appearance(const Mesh& reference, const LookSampler
   const Model a(reference, reference_look), b(model, model_look);
   Box box = bounding_box(reference.vertices);
   box.extend(bounding_box(model.vertices));
-  if (box.diagonal() > (kMostSide - 2 * kMargin) * gsd)
+  if (box.diagonal() > (kMostSide - 2 * kSkyPixels) * gsd)
     throw Error(Stage::kUsage, "--gsd",
                 std::to_string(gsd) + " m makes pictures of more than " +
                     std::to_string(static_cast<int>(kMostSide)) + " pixels a side: give more");
   Box frame = box;
-  frame.min -= Vec3::Constant(kMargin * gsd), frame.max += Vec3::Constant(kMargin * gsd);
+  frame.min -= Vec3::Constant(kSkyPixels * gsd), frame.max += Vec3::Constant(kSkyPixels * gsd);
   PictureErrors sum;
-  for (const Vec3& direction : ring_directions(kDirections, kElevations_deg)) {
-    const FarView view = far_view(frame, direction, gsd / kSamples);
+  for (const Vec3& direction : ring_directions(kDirections, kViewElevations_deg)) {
+    const FarView view = far_view(frame, direction, gsd / kAcrossPixel);
     const double before = 2 * frame.diagonal();
     sum.add(compare_colors(draw(a, view, before), draw(b, view, before)));
   }

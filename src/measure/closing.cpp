@@ -18,18 +18,18 @@
 namespace colod {
 namespace {
 
-constexpr double kSpacing = 0.1;         // metres between samples of a part, at most
-constexpr double kSamples = 400;         // of a part, at least
-constexpr double kBodySpacing = 0.2;     // metres between samples of the body
-constexpr double kAlike = 0.866;         // cosine of 30°
-constexpr std::size_t kMostSides = 8;    // of a part: more is noise
-constexpr double kCell = 0.25;           // metres
-constexpr int kAround = 2;               // cells: half a metre
-constexpr double kNear = 1, kFar = 3;    // metres in depth
-constexpr double kLargeSide = 0.1;       // of a part's area
-constexpr double kSkin = 1e-3;           // metres: no ray meets its own face
-constexpr double kLeastDepth = 0.02;     // metres
-constexpr std::size_t kLeastAround = 3;  // samples that make a plane
+constexpr double kSpacing = 0.1;                     // metres between samples of a part, at most
+constexpr double kSamplesOfPart = 400;               // of a part, at least
+constexpr double kBodySpacing = 0.2;                 // metres between samples of the body
+constexpr double kSameSide = 0.866;                  // cosine of 30°
+constexpr std::size_t kMostSides = 8;                // of a part: more is noise
+constexpr double kCell = 0.25;                       // metres
+constexpr int kCellsAround = 2;                      // cells: half a metre
+constexpr double kNearInDepth = 1, kFarInDepth = 3;  // metres in depth
+constexpr double kLargeSide = 0.1;                   // of a part's area
+constexpr double kOffFace = 1e-3;                    // metres: no ray meets its own face
+constexpr double kLeastDepth = 0.02;                 // metres
+constexpr std::size_t kLeastAround = 3;              // samples that make a plane
 
 bool is_opening(ElementKind kind) {
   return kind == ElementKind::kWindow || kind == ElementKind::kDoor;
@@ -55,7 +55,7 @@ std::vector<Side> find_sides(const Mesh& part, const std::vector<SurfaceSample>&
   std::vector<char> is_taken(part.faces.size(), 0);
   std::vector<Side> sides;
   const auto alike = [&](std::size_t face, const Vec3& along) {
-    return !is_taken[face] && std::abs(cross[face].dot(along)) > kAlike * cross[face].norm();
+    return !is_taken[face] && std::abs(cross[face].dot(along)) > kSameSide * cross[face].norm();
   };
   while (sides.size() < kMostSides) {
     std::size_t seed = part.faces.size();
@@ -89,8 +89,8 @@ class Shadow {
   Shadow(const Vec3& along, const std::vector<Vec3>& points) : basis_(plane_basis(along)) {
     for (const Vec3& p : points) {
       const auto [x, y] = cell(p);
-      for (int j = -kAround; j <= kAround; ++j)
-        for (int i = -kAround; i <= kAround; ++i) cells_.insert({x + i, y + j});
+      for (int j = -kCellsAround; j <= kCellsAround; ++j)
+        for (int i = -kCellsAround; i <= kCellsAround; ++i) cells_.insert({x + i, y + j});
     }
   }
   bool is_near(const Vec3& p) const { return cells_.contains(cell(p)); }
@@ -140,7 +140,7 @@ bool ClosedBuilding::Body::find_level(const std::vector<Vec3>& side, const Vec3&
   Box box;
   for (const Vec3& p : side) depths.push_back(p.dot(along)), box.extend(p);
   const double middle = median(std::move(depths));
-  const Vec3 margin = Vec3::Constant(kFar + kCell * kAround);
+  const Vec3 margin = Vec3::Constant(kFarInDepth + kCell * kCellsAround);
   const Box around{box.min - margin, box.max + margin};
   const Shadow shadow(along, side);
   std::vector<std::size_t> found;
@@ -150,7 +150,7 @@ bool ClosedBuilding::Body::find_level(const std::vector<Vec3>& side, const Vec3&
     if (!(p.array() >= around.min.array()).all() || !(p.array() <= around.max.array()).all())
       continue;
     const double cos = normals[i].dot(along);
-    if (std::abs(cos) < kAlike || std::abs(p.dot(along) - middle) > reach || !shadow.is_near(p))
+    if (std::abs(cos) < kSameSide || std::abs(p.dot(along) - middle) > reach || !shadow.is_near(p))
       continue;
     found.push_back(i);
     sum += cos < 0 ? Vec3(-normals[i]) : normals[i];
@@ -177,8 +177,8 @@ void ClosedBuilding::Body::add_side(const Side& side, const std::vector<SurfaceS
   for (const std::size_t i : side.samples) places.push_back(spread[i].point);
   if (places.empty()) return;
   Level level;
-  const bool is_level =
-      find_level(places, side.along, kNear, level) || find_level(places, side.along, kFar, level);
+  const bool is_level = find_level(places, side.along, kNearInDepth, level) ||
+                        find_level(places, side.along, kFarInDepth, level);
   for (const Vec3& x : places) {
     PartSample s{x, side.along, distance_along(x, side.along), area};
     if (is_level)
@@ -218,14 +218,14 @@ bool ClosedBuilding::is_seen(const Vec3& x) const {
     return rings;
   }();
   return std::any_of(views.begin(), views.end(), [&](const Vec3& view) {
-    return !rays_.is_occluded(x, view, kSkin, std::numeric_limits<double>::infinity());
+    return !rays_.is_occluded(x, view, kOffFace, std::numeric_limits<double>::infinity());
   });
 }
 
 PartRelief ClosedBuilding::sample(const TruthPart& part) const {
   const Body& body = is_opening(part.kind) ? *for_openings_ : *for_others_;
   const Mesh own = part_of(source_.mesh, source_.face_object, part.instance);
-  const double spacing = std::min(kSpacing, std::sqrt(surface_area(own) / kSamples));
+  const double spacing = std::min(kSpacing, std::sqrt(surface_area(own) / kSamplesOfPart));
   PartRelief relief;
   if (!(spacing > 0)) return relief;
   std::vector<SurfaceSample> spread = spread_over(own, spacing);

@@ -22,9 +22,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPresentShare = 0.75;
-constexpr double kNear = 0.25;      // metres at most: a scan has no roof under its dormers, and a
-                                    // layer's roof may lie half a relief from them
-constexpr double kNearShare = 0.5;  // of the relief: nearer to the part than to the closed building
+constexpr double kNearest = 0.25;  // metres at most: a scan has no roof under its dormers, and a
+                                   // layer's roof may lie half a relief from them
+constexpr double kNearestShare =
+    0.5;                            // of the relief: nearer to the part than to the closed building
 constexpr double kLeastSeen = 0.1;  // m² that tell
 constexpr double kLeastRelief = 0.02;  // metres
 
@@ -34,7 +35,7 @@ struct SampledPart {
 };
 
 /// How near counts as there.
-double reach(double relief) { return std::min(kNear, kNearShare * relief); }
+double reach(double relief) { return std::min(kNearest, kNearestShare * relief); }
 
 SampledPart sample_part(const ClosedBuilding& building, const TruthPart& truth) {
   PartRelief relief = building.sample(truth);

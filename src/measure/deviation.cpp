@@ -12,7 +12,7 @@ namespace colod {
 namespace {
 
 constexpr int kMostSteps = 128;      // along a triangle's edge
-constexpr double kSteps = 64;        // along a mesh's diagonal
+constexpr double kStepsAcross = 64;  // along a mesh's diagonal
 constexpr double kFinestStep = 0.1;  // metres
 
 constexpr double kSlack = 1e-6;  // metres: more than distances are rounded by
@@ -57,7 +57,7 @@ double one_sided_deviation(const Mesh& from, const RayScene& to, double spacing,
 
 double two_sided_deviation(const Mesh& a, const RayScene& scene_a, const Mesh& b,
                            const RayScene& scene_b, double known) {
-  const double spacing = std::max(kFinestStep, bounding_box(b.vertices).diagonal() / kSteps);
+  const double spacing = std::max(kFinestStep, bounding_box(b.vertices).diagonal() / kStepsAcross);
   return one_sided_deviation(b, scene_a, spacing, one_sided_deviation(a, scene_b, spacing, known));
 }
 

@@ -113,10 +113,6 @@ std::vector<Eigen::Matrix3d> spread_orientations() {
   }
 }
 
-std::uint8_t quantized(double value) {
-  return static_cast<std::uint8_t>(std::min(255.0, std::floor(256 * value)));
-}
-
 ViewDescriptor describe(const Silhouette& silhouette) {
   ViewDescriptor descriptor;
   auto next = descriptor.begin();

@@ -22,7 +22,6 @@ namespace {
 using namespace light_fields;
 
 constexpr int kAngular = 12, kRadial = 3;
-constexpr int kSize = kSilhouetteSize;
 
 /// A silhouette's pixels about the centre of their box.
 struct Shape {
@@ -44,10 +43,6 @@ struct Shape {
     return std::complex<double>(p.x, p.y) - center;
   }
 };
-
-std::uint8_t quantized(double value) {
-  return static_cast<std::uint8_t>(std::min(255.0, std::floor(256 * value)));
-}
 
 /// |F(p, r)| over |F(0, 0)|, which is 1: by p, then r, without (0, 0).
 std::vector<double> radial_transform(const Shape& shape, double radius) {
@@ -89,7 +84,8 @@ std::array<double, kFourierCount> contour_spectrum(const Shape& shape,
 /// 4π area / perimeter², both in pixels: 1 of a disc and of what is rounder than pixels tell.
 double circularity(const Silhouette& s, const Shape& shape) {
   const auto is_covered = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < kSize && y < kSize && s[y * kSize + x];
+    return x >= 0 && y >= 0 && x < kSilhouetteSize && y < kSilhouetteSize &&
+           s[y * kSilhouetteSize + x];
   };
   const auto border =
       static_cast<double>(std::count_if(shape.pixels.begin(), shape.pixels.end(), [&](Pixel p) {
@@ -111,7 +107,8 @@ double eccentricity(const Shape& shape) {
   return std::min(1.0, ((xx - yy) * (xx - yy) + 4 * xy * xy) / ((xx + yy) * (xx + yy)));
 }
 
-ProgramDescriptor describe(const Silhouette& silhouette, const Shape& shape, double radius) {
+ProgramDescriptor describe_by_program(const Silhouette& silhouette, const Shape& shape,
+                                      double radius) {
   ProgramDescriptor descriptor{};
   if (shape.pixels.empty()) return descriptor;
   auto next = descriptor.begin();
@@ -124,7 +121,7 @@ ProgramDescriptor describe(const Silhouette& silhouette, const Shape& shape, dou
 }
 
 /// Fourier coefficients and circularity count twice.
-int difference(const ProgramDescriptor& a, const ProgramDescriptor& b) {
+int weighted_difference(const ProgramDescriptor& a, const ProgramDescriptor& b) {
   int sum = 0;
   for (int i = 0; i < kProgramCount; ++i) {
     const bool is_twice = i >= kRadialTransformCount && i <= kRadialTransformCount + kFourierCount;
@@ -147,13 +144,13 @@ ProgramLightFields describe_as_program(const Mesh& mesh) {
     }
     for (int view = 0; view < kViewCount; ++view)
       result.views[field][view] =
-          describe(silhouettes[field * kViewCount + view], shapes[view], radius);
+          describe_by_program(silhouettes[field * kViewCount + view], shapes[view], radius);
   });
   return result;
 }
 
 int light_field_distance(const ProgramLightFields& a, const ProgramLightFields& b) {
-  return least_distance(a, b, difference);
+  return least_distance(a, b, weighted_difference);
 }
 
 }  // namespace colod

@@ -34,7 +34,7 @@ double radial_coefficient(int n, int m, int s) {
 }
 
 /// Clockwise on the screen, from east.
-constexpr std::array<Pixel, 8> kAround = {
+constexpr std::array<Pixel, 8> kEightAround = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 /// Only the largest 8-connected part; of equal ones the first.
@@ -52,7 +52,7 @@ Silhouette largest_part(const Silhouette& s) {
       const Pixel p = stack.back();
       stack.pop_back();
       ++count;
-      for (const Pixel step : kAround) {
+      for (const Pixel step : kEightAround) {
         const Pixel q = {p.x + step.x, p.y + step.y};
         if (!is_covered(s, q) || part[q.y * kSize + q.x] >= 0) continue;
         part[q.y * kSize + q.x] = parts;
@@ -81,13 +81,13 @@ std::vector<Pixel> trace_contour(const Silhouette& s) {
     // From the outside: the neighbour after the one that the last step left uncovered.
     const int from = (direction + 7 - direction % 2) % 8;
     while (turn < 8) {
-      const Pixel step = kAround[(from + turn) % 8];
+      const Pixel step = kEightAround[(from + turn) % 8];
       if (is_covered(s, {p.x + step.x, p.y + step.y})) break;
       ++turn;
     }
     if (turn == 8) return contour;  // a single pixel
     direction = (from + turn) % 8;
-    contour.push_back({p.x + kAround[direction].x, p.y + kAround[direction].y});
+    contour.push_back({p.x + kEightAround[direction].x, p.y + kEightAround[direction].y});
     const std::size_t n = contour.size();
     if (n > 3 && contour[n - 1] == contour[1] && contour[n - 2] == contour[0]) {
       contour.resize(n - 2);

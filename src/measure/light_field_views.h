@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -36,6 +38,11 @@ std::vector<Silhouette> cast_silhouettes(const Mesh& mesh);
 std::vector<Pixel> covered_pixels(const Silhouette& silhouette);
 /// The border pixels of the largest 8-connected part, in order round it from outside.
 std::vector<Pixel> outer_contour(const Silhouette& silhouette);
+
+/// A magnitude of 0 … 1 in a byte.
+inline std::uint8_t quantized(double value) {
+  return static_cast<std::uint8_t>(std::min(255.0, std::floor(256 * value)));
+}
 
 /// Onto which view each of the 60 rotations moves each view.
 using Permutation = std::array<int, kViewCount>;

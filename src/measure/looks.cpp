@@ -8,21 +8,22 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/error.h"
 #include "core/flat.h"
 #include "core/parallel.h"
+#include "core/point_tree.h"
 #include "core/rays.h"
 #include "face_samples.h"
+#include "grains.h"
 #include "looks_facets.h"
 
 namespace colod {
 namespace {
 
-constexpr double kSamples = 8192;             // a mesh
+constexpr double kSamplesOfMesh = 8192;       // a mesh
 constexpr std::size_t kMostPoints = 1 << 18;  // of a cloud that are asked
 constexpr std::size_t kMostEdges = 100000;    // faces whose edges are measured
 constexpr double kLeastSpacing = 0.02;        // metres
@@ -38,25 +39,10 @@ constexpr double kOpposed = -0.866;   // cosine: a thin body's sides face apart 
 constexpr double kFacing = 0.5;       // cosine: the source faces as the side does
 constexpr double kSheets = 0.01;      // metres of noise: what a person drew may be sheets
 constexpr double kLeastWidth = 0.01;  // metres
-constexpr double kSkin = 2e-4;        // metres: no ray meets its own face
+constexpr double kOffFacet = 2e-4;    // metres: no ray meets its own face
 // What one sees in a picture (judge_looks).
 constexpr double kSeenFlap = 0.5, kSeenUnsupported = 1;                    // m²
 constexpr double kSeenLeaning = 0.05, kSeenEdges = 0.2, kSeenEaves = 0.1;  // shares
-constexpr std::size_t kGrain = 64;
-
-/// Points as nanoflann wants to see them.
-struct Points {
-  std::vector<Vec3> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>,
-                                                      Points, 3, std::size_t>;
 
 Mesh finite_part(const Mesh& mesh) {
   Mesh part{mesh.vertices, {}};
@@ -71,7 +57,7 @@ Mesh finite_part(const Mesh& mesh) {
 }
 
 double spacing_of(const Mesh& mesh) {
-  return std::max(kLeastSpacing, std::sqrt(surface_area(mesh) / kSamples));
+  return std::max(kLeastSpacing, std::sqrt(surface_area(mesh) / kSamplesOfMesh));
 }
 
 double median_edge(const Mesh& mesh) {
@@ -157,8 +143,9 @@ FaultPlace worst_place(const std::vector<SurfaceSample>& points, const std::vect
 
 struct LookGauge::Impl {
   SourceLooks looks;
-  std::size_t faces = 0;             // of the source; 0: points
-  Points samples;                    // of its surface, or its points
+  std::size_t faces = 0;      // of the source; 0: points
+  std::vector<Vec3> samples;  // of its surface, or its points
+  PointsSeen seen{samples};
   std::vector<Vec3> normals;         // of the samples; empty: none known
   std::unique_ptr<Surface> own;      // where none was given
   const Surface* surface = nullptr;  // of points: none
@@ -189,14 +176,14 @@ LookGauge::Impl::Impl(const Source& source, const Surface* known)
   } else {
     sample_points(source.cloud);
   }
-  if (samples.points.empty())
+  if (samples.empty())
     throw Error(Stage::kInput, source.name, "no finite face with an area and no finite point");
   measure_noise();
-  const Box box = bounding_box(surface ? surface->mesh.vertices : samples.points);
+  const Box box = bounding_box(surface ? surface->mesh.vertices : samples);
   support = std::max(kSupport, kSupportShare * box.diagonal());
   thin = std::max(kThin, looks.noise);
   if (!surface) support = std::max(support, kSpacings * spacing_of_points());
-  std::vector<Vec3> points = samples.points;
+  std::vector<Vec3> points = samples;
   if (surface)  // a top is no lower than its corners
     points.insert(points.end(), surface->mesh.vertices.begin(), surface->mesh.vertices.end());
   tops.emplace(points, support);
@@ -207,7 +194,7 @@ void LookGauge::Impl::sample_surface() {
   if (mesh.faces.empty()) return;
   looks.edge = median_edge(mesh);
   for (const SurfaceSample& s : spread_over(mesh, spacing_of(mesh))) {
-    samples.points.push_back(s.point);
+    samples.push_back(s.point);
     normals.push_back(face_cross(mesh, mesh.faces[s.face]).normalized());
   }
 }
@@ -216,22 +203,22 @@ void LookGauge::Impl::sample_points(const PointCloud& cloud) {
   const std::size_t step = cloud.points.size() / kMostPoints + 1;
   for (std::size_t i = 0; i < cloud.points.size(); i += step) {
     if (!cloud.points[i].allFinite()) continue;
-    samples.points.push_back(cloud.points[i]);
+    samples.push_back(cloud.points[i]);
     if (!cloud.normals.empty()) normals.push_back(cloud.normals[i]);
   }
-  if (samples.points.empty()) return;
-  tree = std::make_unique<PointTree>(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  if (samples.empty()) return;
+  tree = std::make_unique<PointTree>(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   tree->buildIndex();
 }
 
 /// The median distance from a point to the next one.
 double LookGauge::Impl::spacing_of_points() const {
   std::vector<double> gaps;
-  const std::size_t step = samples.points.size() / kNoiseSeeds + 1;
-  for (std::size_t i = 0; i < samples.points.size(); i += step) {
+  const std::size_t step = samples.size() / kNoiseSeeds + 1;
+  for (std::size_t i = 0; i < samples.size(); i += step) {
     std::size_t index[2];
     double squared[2];
-    if (tree->knnSearch(samples.points[i].data(), 2, index, squared) == 2)
+    if (tree->knnSearch(samples[i].data(), 2, index, squared) == 2)
       gaps.push_back(std::sqrt(squared[1]));
   }
   return median(std::move(gaps));
@@ -239,18 +226,18 @@ double LookGauge::Impl::spacing_of_points() const {
 
 /// Root of the mean squared distance from the best plane; negative: too few points to tell.
 double LookGauge::Impl::noise_at(std::size_t sample) const {
-  const std::size_t step = samples.points.size() / kNoisePoints + 1;
+  const std::size_t step = samples.size() / kNoisePoints + 1;
   std::vector<Vec3> around;
-  for (std::size_t i = 0; i < samples.points.size(); i += step)
-    if ((samples.points[i] - samples.points[sample]).squaredNorm() < kNoiseRadius * kNoiseRadius &&
+  for (std::size_t i = 0; i < samples.size(); i += step)
+    if ((samples[i] - samples[sample]).squaredNorm() < kNoiseRadius * kNoiseRadius &&
         (normals.empty() || normals[sample].dot(normals[i]) > M_SQRT1_2))
-      around.push_back(samples.points[i]);
+      around.push_back(samples[i]);
   return around.size() < kLeastNeighbours ? -1 : rms_from_plane(around);
 }
 
 void LookGauge::Impl::measure_noise() {
-  const std::size_t step = samples.points.size() / kNoiseSeeds + 1;
-  std::vector<double> all((samples.points.size() + step - 1) / step);
+  const std::size_t step = samples.size() / kNoiseSeeds + 1;
+  std::vector<double> all((samples.size() + step - 1) / step);
   parallel_for(all.size(), [&](std::size_t i) { all[i] = noise_at(i * step); });
   std::erase_if(all, [](double rms) { return rms < 0; });
   looks.noise = std::min(kMostNoise, median(std::move(all)));
@@ -279,7 +266,7 @@ bool LookGauge::Impl::shows(const Vec3& p, const Vec3& normal) const {
 
 bool LookGauge::Impl::is_flap(const RayScene& body, const Mesh& mesh, const Vec3& p,
                               const Vec3& normal) const {
-  const RayHit hit = body.first_hit(p, -normal, kSkin, thin);
+  const RayHit hit = body.first_hit(p, -normal, kOffFacet, thin);
   if (!hit || !hit.is_inside) return false;
   // Under the upper edge of a lean-to, or in any sharp corner, a body is thin, but it is no sheet.
   const Vec3 behind = face_cross(mesh, mesh.faces[hit.triangle]).normalized();
@@ -298,7 +285,7 @@ bool LookGauge::Impl::is_unsupported(const RayScene& body, const Vec3& p,
   }();
   return std::any_of(views.begin(), views.end(), [&](const Vec3& view) {
     return view.dot(normal) > 0 &&
-           !body.is_occluded(p, view, kSkin, std::numeric_limits<double>::infinity());
+           !body.is_occluded(p, view, kOffFacet, std::numeric_limits<double>::infinity());
   });
 }
 
@@ -307,7 +294,7 @@ void LookGauge::Impl::look_at_surface(const Mesh& m, const std::vector<int>& fac
   const RayScene body(m);
   const std::vector<SurfaceSample> points = spread_over(m, spacing_of(m));
   std::vector<char> is_thin(points.size(), 0), is_alone(points.size(), 0);
-  parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(points.size(), kGrainOfRays, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& p = points[i].point;
       const Vec3 normal = face_cross(m, m.faces[points[i].face]).normalized();

@@ -27,7 +27,7 @@ constexpr double kDirection_deg = 2;       // about a plan direction
 constexpr double kNearlyUpright_deg = 75;  // steeper edges have no plan direction
 constexpr double kSloping_deg = 5;         // hips slope more
 constexpr double kSecondPair = 0.1;        // of all edges that a second pair of directions explains
-constexpr int kSteps = 360;                // of directions tried, over a right angle
+constexpr int kTurns = 360;                // of directions tried, over a right angle
 
 struct Facet {
   Vec3 normal = Vec3::Zero();  // unit
@@ -171,8 +171,8 @@ struct Heading {
 /// The pair of directions that explains most of what no other does yet; its length.
 double explain_most(std::vector<Heading>& headings, double least) {
   double most = 0, best = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double pair = i * 90.0 / kSteps;
+  for (int i = 0; i < kTurns; ++i) {
+    const double pair = i * 90.0 / kTurns;
     double length = 0;
     for (const Heading& h : headings)
       if (!h.is_explained && h.fits(pair)) length += h.length;

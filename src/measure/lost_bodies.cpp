@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "face_samples.h"
+#include "grains.h"
 #include "solid.h"
 
 namespace colod {
@@ -20,10 +21,9 @@ constexpr double kRoom = 2;            // metres: the depth of a room, a body is
 constexpr double kDeep = 0.25;         // … or this share of the side of a cube of its volume
 constexpr double kFar = 0.5;           // of that depth: surface that lies so far off is far
 constexpr double kMostly = 0.5;        // of the surface about a body that is far
-constexpr double kNear = 1;            // voxels
+constexpr double kNearVoxels = 1;      // voxels
 constexpr double kReach = 0.5, kReachShare = 0.02;  // metres, of the diagonal: no farther is near
 constexpr double kLeastMissed = 0.1;  // of the area: less is noise of outlines and clutter
-constexpr std::size_t kGrain = 256;
 
 /// Distance to the layer where it is more than `least`, 0 elsewhere.
 double distance_beyond(const RayScene& layer, const Vec3& p, double least) {
@@ -106,10 +106,10 @@ Box used_box(const Mesh& m) {
 std::vector<double> find_missing(const VoxelGrid& grid, const std::vector<char>& is_solid,
                                  const std::vector<char>& is_inside, const RayScene& layer) {
   std::vector<double> distance(grid.count(), 0);
-  parallel_ranges(distance.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(distance.size(), kGrainOfQueries, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (is_solid[i] && !is_inside[i])
-        distance[i] = distance_beyond(layer, grid.center(i), kNear * grid.size);
+        distance[i] = distance_beyond(layer, grid.center(i), kNearVoxels * grid.size);
   });
   return distance;
 }
@@ -127,7 +127,7 @@ std::vector<Place> look_about(const std::vector<SurfaceSample>& samples, const V
                               const std::vector<char>& is_solid, const std::vector<int>& body_of,
                               const RayScene& layer, double reach) {
   std::vector<Place> places(samples.size());
-  parallel_ranges(samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(samples.size(), kGrainOfQueries, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& p = samples[i].point;
       Place& place = places[i];

@@ -8,30 +8,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/point_tree.h"
 #include "core/rays.h"
+#include "grains.h"
 
 namespace colod {
 namespace {
-
-/// Points as nanoflann wants to see them.
-struct Points {
-  const std::vector<Vec3>& points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>,
-                                                      Points, 3, std::size_t>;
-
-constexpr std::size_t kGrain = 256;  // queries a task takes
 
 /// A number in [0, 1) that depends on (seed, index) only, so that samples need no order
 /// (SplitMix64, Steele et al. 2014).
@@ -123,7 +108,7 @@ Probes sample_surface(const Mesh& mesh, const DistanceOptions& options,
     const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
     probes.points[i] = a + r * (1 - t) * (b - a) + r * t * (c - a);
   };
-  parallel_for(probes.samples, place, kGrain);
+  parallel_for(probes.samples, place, kGrainOfQueries);
   add_vertices(mesh, is_left_out, probes);
   return probes;
 }
@@ -162,7 +147,7 @@ Spread spread_of(const Probes& probes, const std::vector<double>& distances) {
 template <typename Distance>
 OneSided measure(const Probes& probes, const Distance& distance) {
   std::vector<double> distances(probes.points.size());
-  parallel_ranges(probes.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(probes.points.size(), kGrainOfQueries, [&](std::size_t begin, std::size_t end) {
     double bound = std::numeric_limits<double>::infinity();
     for (std::size_t i = begin; i < end; ++i) {
       if (i > begin) bound = distances[i - 1] + (probes.points[i] - probes.points[i - 1]).norm();
@@ -215,7 +200,7 @@ struct DistanceGauge::Impl {
   Box box;
   Probes probes;
   std::unique_ptr<RayScene> mesh;  ///< null: a cloud
-  Points points{probes.points};
+  const PointsSeen points{probes.points};
   std::unique_ptr<PointTree> cloud;
 
   Impl(const Mesh& a, const DistanceOptions& o, const std::vector<char>& is_left_out = {})

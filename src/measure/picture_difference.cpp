@@ -18,12 +18,12 @@ constexpr float kCovered = 0.5f;    // share of a pixel from which on it is insi
 constexpr float kHardlyCovered = 0.25f;  // … and from which on one is near enough
 constexpr int kMostOutline = 32;         // pixels
 
-using Plane = std::vector<float>;
+using Channel = std::vector<float>;
 
 /// Least or largest of each pixel and its eight neighbours; `pick` chooses of two.
 template <typename Pick>
-Plane over_neighbours(const Plane& in, int width, int height, const Pick& pick) {
-  Plane rows(in.size()), out(in.size());
+Channel over_neighbours(const Channel& in, int width, int height, const Pick& pick) {
+  Channel rows(in.size()), out(in.size());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const std::size_t at = static_cast<std::size_t>(y) * width + x;
@@ -39,17 +39,17 @@ Plane over_neighbours(const Plane& in, int width, int height, const Pick& pick) 
 }
 
 /// How far each pixel of `a` is out of the range of b's pixels around it.
-void add_out_of_range(const GreyPicture& a, const GreyPicture& b, Plane& difference) {
+void add_out_of_range(const GreyPicture& a, const GreyPicture& b, Channel& difference) {
   const auto least = [](float u, float v) { return std::min(u, v); };
   const auto most = [](float u, float v) { return std::max(u, v); };
-  const Plane low = over_neighbours(b.luminance, b.width, b.height, least);
-  const Plane high = over_neighbours(b.luminance, b.width, b.height, most);
+  const Channel low = over_neighbours(b.luminance, b.width, b.height, least);
+  const Channel high = over_neighbours(b.luminance, b.width, b.height, most);
   for (std::size_t i = 0; i < difference.size(); ++i)
     difference[i] = std::max({difference[i], low[i] - a.luminance[i], a.luminance[i] - high[i]});
 }
 
 /// The largest sum over a connected set of pixels that differ; the map is used up.
-double largest_piece(Plane& difference, int width, int height) {
+double largest_piece(Channel& difference, int width, int height) {
   double largest = 0;
   std::vector<int> stack;
   const auto visit = [&](int i) {
@@ -106,7 +106,7 @@ int farthest(const GreyPicture& a, const GreyPicture& b) {
 
 PictureDifference compare_pictures(const GreyPicture& a, const GreyPicture& b) {
   assert(a.width == b.width && a.height == b.height);
-  Plane difference(a.luminance.size(), 0);
+  Channel difference(a.luminance.size(), 0);
   add_out_of_range(a, b, difference);
   add_out_of_range(b, a, difference);
   PictureDifference result;

@@ -16,9 +16,9 @@ namespace colod {
 namespace {
 
 using Color = Eigen::Vector3f;
-using Plane = std::vector<float>;  // width × height
+using Channel = std::vector<float>;  // width × height
 
-constexpr float kCovered = 0.5f;
+constexpr float kCoveredPixel = 0.5f;     // of it: inside the building
 constexpr double kPixelsADegree = 67.02;  // a screen of 0.7 m with 3840 pixels, 0.7 m away
 constexpr double kSsimSigma = 1.5;        // pixels
 constexpr int kSsimRadius = 5;            // pixels
@@ -52,8 +52,9 @@ Kernel gaussian(int radius, double sigma) {
 }
 
 /// Along rows, then along columns; what is beyond the border is the border.
-Plane convolve(const Plane& in, int width, int height, const Kernel& across, const Kernel& down) {
-  Plane rows(in.size()), out(in.size());
+Channel convolve(const Channel& in, int width, int height, const Kernel& across,
+                 const Kernel& down) {
+  Channel rows(in.size()), out(in.size());
   const int rx = static_cast<int>(across.size()) / 2, ry = static_cast<int>(down.size()) / 2;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -124,7 +125,7 @@ struct Sensitivity {
   double a1, b1, a2, b2;
 };
 
-Plane seen_through(const Plane& in, int width, int height, const Sensitivity& s) {
+Channel seen_through(const Channel& in, int width, int height, const Sensitivity& s) {
   const double widest = std::max(s.b1, s.b2), pi = std::numbers::pi;
   const int radius =
       static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * kPixelsADegree));
@@ -140,9 +141,9 @@ Plane seen_through(const Plane& in, int width, int height, const Sensitivity& s)
     return convolve(in, width, height, k, k);
   };
   double w1 = 0, w2 = 0;
-  Plane out = part(s.a1, s.b1, w1);
+  Channel out = part(s.a1, s.b1, w1);
   if (s.a2 == 0) return out;
-  const Plane second = part(s.a2, s.b2, w2);
+  const Channel second = part(s.a2, s.b2, w2);
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = static_cast<float>((w1 * out[i] + w2 * second[i]) / (w1 + w2));
   return out;
@@ -151,20 +152,20 @@ Plane seen_through(const Plane& in, int width, int height, const Sensitivity& s)
 /// What FLIP compares of one picture.
 struct Seen {
   std::vector<Color> lab;  // as the eye filters it
-  Plane edge, point;       // how much of each there is
+  Channel edge, point;     // how much of each there is
 };
 
-Plane magnitude(const Plane& light, const ColorPicture& p, const Kernel& slope,
-                const Kernel& smooth) {
-  Plane x = convolve(light, p.width, p.height, slope, smooth);
-  const Plane y = convolve(light, p.width, p.height, smooth, slope);
+Channel magnitude(const Channel& light, const ColorPicture& p, const Kernel& slope,
+                  const Kernel& smooth) {
+  Channel x = convolve(light, p.width, p.height, slope, smooth);
+  const Channel y = convolve(light, p.width, p.height, smooth, slope);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::hypot(x[i], y[i]);
   return x;
 }
 
 Seen look_at(const ColorPicture& p) {
-  std::array<Plane, 3> channel;
-  Plane light;
+  std::array<Channel, 3> channel;
+  Channel light;
   for (const Color& c : p.linear) {
     const Color o = opponent_of(c);
     for (int k = 0; k < 3; ++k) channel[k].push_back(o[k]);
@@ -199,9 +200,9 @@ float color_error(const Color& a, const Color& b) {
                        : kSmallTop + (error - small) / (most - small) * (1 - kSmallTop);
 }
 
-Plane flip(const ColorPicture& a, const ColorPicture& b) {
+Channel flip(const ColorPicture& a, const ColorPicture& b) {
   const Seen s = look_at(a), t = look_at(b);
-  Plane out;
+  Channel out;
   for (std::size_t i = 0; i < s.lab.size(); ++i) {
     const float feature =
         std::max(std::abs(s.edge[i] - t.edge[i]), std::abs(s.point[i] - t.point[i]));
@@ -211,24 +212,24 @@ Plane flip(const ColorPicture& a, const ColorPicture& b) {
   return out;
 }
 
-Plane luma(const ColorPicture& p) {
-  Plane out;
+Channel luma(const ColorPicture& p) {
+  Channel out;
   for (const Color& c : p.linear)
     out.push_back(0.299f * srgb_of(c[0]) + 0.587f * srgb_of(c[1]) + 0.114f * srgb_of(c[2]));
   return out;
 }
 
-Plane ssim(const ColorPicture& a, const ColorPicture& b) {
+Channel ssim(const ColorPicture& a, const ColorPicture& b) {
   const Kernel bell = gaussian(kSsimRadius, kSsimSigma);
-  const Plane u = luma(a), v = luma(b);
-  const auto mean = [&](const Plane& p, const Plane& q) {
-    Plane product(p.size());
+  const Channel u = luma(a), v = luma(b);
+  const auto mean = [&](const Channel& p, const Channel& q) {
+    Channel product(p.size());
     for (std::size_t i = 0; i < p.size(); ++i) product[i] = p[i] * q[i];
     return convolve(product, a.width, a.height, bell, bell);
   };
-  const Plane one(u.size(), 1), mu = mean(u, one), mv = mean(v, one), uu = mean(u, u),
-                                vv = mean(v, v), uv = mean(u, v);
-  Plane out(u.size());
+  const Channel one(u.size(), 1), mu = mean(u, one), mv = mean(v, one), uu = mean(u, u),
+                                  vv = mean(v, v), uv = mean(u, v);
+  Channel out(u.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const float su = uu[i] - mu[i] * mu[i], sv = vv[i] - mv[i] * mv[i];
     out[i] = (2 * mu[i] * mv[i] + kC1) * (2 * (uv[i] - mu[i] * mv[i]) + kC2) /
@@ -246,10 +247,10 @@ void PictureErrors::add(const PictureErrors& e) {
 
 PictureErrors compare_colors(const ColorPicture& a, const ColorPicture& b) {
   assert(a.width == b.width && a.height == b.height);
-  const Plane structure = ssim(a, b), difference = flip(a, b);
+  const Channel structure = ssim(a, b), difference = flip(a, b);
   PictureErrors e;
   for (std::size_t i = 0; i < a.linear.size(); ++i) {
-    const bool in_a = a.coverage[i] >= kCovered, in_b = b.coverage[i] >= kCovered;
+    const bool in_a = a.coverage[i] >= kCoveredPixel, in_b = b.coverage[i] >= kCoveredPixel;
     if (!in_a && !in_b) continue;
     ++e.pixels, e.only_a += !in_b, e.only_b += !in_a;
     e.ssim += structure[i], e.flip += difference[i];

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/rays.h"
 #include "face_samples.h"
+#include "grains.h"
 #include "parameters.h"
 
 namespace colod {
@@ -22,9 +23,8 @@ namespace {
 
 using namespace parameters::scene_part;
 
-constexpr double kLevel = 0.5;     // upright component of a top's normal at least
-constexpr double kSamples = 3000;  // of a layer
-constexpr std::size_t kGrain = 64;
+constexpr double kLevel = 0.5;            // upright component of a top's normal at least
+constexpr double kSamplesOfLayer = 3000;  // of a layer
 constexpr double kRadian_deg = 57.29577951308232;
 
 /// Length of the edges that faces use more often one way than the other.
@@ -74,10 +74,10 @@ struct Invention {
 };
 
 Invention measure_invention(const RayScene& source, double reach, const Mesh& layer) {
-  const double spacing = std::sqrt(surface_area(layer) / kSamples);
+  const double spacing = std::sqrt(surface_area(layer) / kSamplesOfLayer);
   const std::vector<SurfaceSample> samples = spread_over(layer, spacing);
   std::vector<char> is_far(samples.size());
-  parallel_ranges(samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(samples.size(), kGrainOfRays, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const NearestPoint near = source.nearest(samples[i].point, reach);
       is_far[i] = near.triangle < 0 || near.distance > reach;

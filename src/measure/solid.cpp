@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "grains.h"
 
 namespace colod {
 namespace {
@@ -18,7 +19,6 @@ constexpr double kLeastSize = 0.05;  // metres: nothing smaller is a part of a b
 constexpr int kMostSeen = 6;         // views besides the one from above
 constexpr double kOffset = 0.382;    // of a pixel: no ray runs along an edge of a level grid
 constexpr double kBeside = 0.081;    // of a voxel
-constexpr std::size_t kGrain = 64;
 
 /// What one view sees: per pixel the height along the direction of what is hit first.
 struct View {
@@ -57,7 +57,7 @@ View look(const VoxelGrid& grid, const RayScene& surface, const Vec3& direction)
   view.height.assign(static_cast<std::size_t>(view.nu) * view.nv,
                      -std::numeric_limits<double>::infinity());
   const double from = box.max.z() + box.diagonal();
-  parallel_ranges(view.height.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(view.height.size(), kGrainOfRays, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double x = view.u_min + (static_cast<double>(i % view.nu) + kOffset) * view.size;
       const double y = view.v_min + (static_cast<double>(i / view.nu) + kOffset) * view.size;
@@ -136,7 +136,7 @@ std::vector<char> find_inside(const VoxelGrid& grid, const RayScene& closed) {
           depth += hit.is_inside ? -1 : 1;
         }
       },
-      kGrain);
+      kGrainOfRays);
   return is_inside;
 }
 

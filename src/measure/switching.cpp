@@ -23,8 +23,8 @@ constexpr double kMostSamples = 768;                    // along a building's di
 constexpr double kMostPixels = 64;  // nobody wants to know how much worse it gets nearby
 // Least factors from layer to layer; what is computed from the first differs by 1.5 after rounding.
 constexpr double kVisualStep = 1.501, kDeviationStep = 1.01;
-constexpr double kLeastGsd = 1e-4;  // metres a pixel
-constexpr double kAlike = 0.01;     // metres
+constexpr double kLeastGsd = 1e-4;      // metres a pixel
+constexpr double kSameDistance = 0.01;  // metres
 
 bool is_same(const Mesh& a, const Mesh& b) {
   return a.faces == b.faces && a.vertices == b.vertices;
@@ -106,7 +106,8 @@ void measure_deviations(const std::vector<Mesh>& layers, std::vector<LayerSight>
     const double to_finest = between(k, finest), finer = sights[k + 1].deviation;
     sights[k].deviation = std::max(to_finest, finer);
     // Were k near to k + 1, both would be as far from the finest.
-    sights[k].is_like_finer = std::abs(to_finest - finer) <= kAlike && between(k, k + 1) <= kAlike;
+    sights[k].is_like_finer =
+        std::abs(to_finest - finer) <= kSameDistance && between(k, k + 1) <= kSameDistance;
   }
 }
 

@@ -12,10 +12,10 @@
 namespace colod {
 namespace {
 
-constexpr int kMargin = 8;                         // samples of sky about the building
-constexpr std::uint8_t kSky = 230;                 // luminance, of 255
+constexpr int kSkySamples = 8;                     // samples of sky about the building
+constexpr std::uint8_t kSkyLuminance = 230;        // luminance, of 255
 constexpr double kAmbient = 0.4, kDiffuse = 0.45;  // of a white that surfaces never reach
-constexpr double kMostSamples = 4096;              // a side: a guard against wild boxes
+constexpr double kMostOfSide = 4096;               // a side: a guard against wild boxes
 
 /// A corner in samples, and its depth in metres.
 struct Corner {
@@ -79,7 +79,7 @@ void fill_triangle(Samples& out, const std::array<Corner, 3>& c, std::uint8_t lu
 
 Samples draw(const Mesh& mesh, const FarView& view) {
   const auto count = static_cast<std::size_t>(view.width) * view.height;
-  Samples out{view.width, view.height, std::vector<std::uint8_t>(count, kSky),
+  Samples out{view.width, view.height, std::vector<std::uint8_t>(count, kSkyLuminance),
               std::vector<float>(count, std::numeric_limits<float>::infinity())};
   std::vector<Corner> corners;
   for (const Vec3& p : mesh.vertices) corners.push_back(project(p, view));
@@ -121,8 +121,8 @@ FarView far_view(const Box& box, const Vec3& direction, double sample) {
   const Vec3 half = 0.5 * box.size();
   const double across = 2 * half.dot(view.right.cwiseAbs()) / sample;
   const double tall = 2 * half.dot(view.up.cwiseAbs()) / sample;
-  view.width = static_cast<int>(std::min(kMostSamples, std::ceil(across))) + 2 * kMargin;
-  view.height = static_cast<int>(std::min(kMostSamples, std::ceil(tall))) + 2 * kMargin;
+  view.width = static_cast<int>(std::min(kMostOfSide, std::ceil(across))) + 2 * kSkySamples;
+  view.height = static_cast<int>(std::min(kMostOfSide, std::ceil(tall))) + 2 * kSkySamples;
   view.corner =
       box.center() - 0.5 * sample * ((view.width - 1) * view.right - (view.height - 1) * view.up);
   return view;
@@ -151,7 +151,8 @@ GreyPicture FarPicture::at(int n) const {
       };
       const int beyond = n * n - (right - x) * (bottom - y);  // sky
       out.coverage.push_back(share * static_cast<float>(sum(coverage_)));
-      out.luminance.push_back(share / 255.0f * static_cast<float>(sum(luminance_) + kSky * beyond));
+      out.luminance.push_back(share / 255.0f *
+                              static_cast<float>(sum(luminance_) + kSkyLuminance * beyond));
     }
   return out;
 }

@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kLeastArea = 1;          // m²: smaller outlines are slips of the pen
 constexpr std::size_t kMost = 5'000'000;  // features of a file
-constexpr double kDegree = 0.017453292519943295;
 
 struct DatasetDeleter {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
 
 #include "core/error.h"
@@ -21,7 +20,6 @@ namespace {
 
 constexpr double kMajor = 6378137, kFlattening = 1 / 298.257223563;
 constexpr double kSquared = kFlattening * (2 - kFlattening);
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLowest = 6.3e6, kHighest = 6.5e6;  // metres from the Earth's middle
 
 /// The numbers of a member that is a list of `count`.

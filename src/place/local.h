@@ -1,6 +1,7 @@
 // Inside room `place` only: places in degrees, and axes east, north and up about one.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 
 namespace colod {
 
+constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFarthest = 1e8;  ///< metres: no system's coordinates reach it
 
 /// "a,b" or "a,b,c", blanks allowed around; nothing when it is anything else.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kReach = kNear / 2;
 constexpr std::size_t kLargest = 8;     // bodies of a cell that all others of it meet
-constexpr int kBins = 36;               // of 10° each, of the walls' directions
+constexpr int kWallBins = 36;           // of 10° each, of the walls' directions
 constexpr double kWallShare = 0.15;     // of the area: a box ten times as wide as high has 0.17
 constexpr double kStraightShare = 0.5;  // of the walls in two of nine bins; a tree has 0.22
 constexpr double kSideShare = 0.05;     // of the walls on each of four sides
@@ -102,13 +102,15 @@ bool is_closed(const std::vector<int>& welded, const std::vector<Face>& faces,
 }
 
 /// Walls mostly along two directions at right angles, some on each of the four sides.
-bool has_four_walls(const std::array<double, kBins>& walls, double area) {
+bool has_four_walls(const std::array<double, kWallBins>& walls, double area) {
   double all = 0, best = -1;
   for (const double w : walls) all += w;
   if (all < kWallShare * area) return false;
   int at = 0;
-  const auto bin = [&](int i) { return walls[static_cast<std::size_t>((i + kBins) % kBins)]; };
-  for (int i = 0; i < kBins / 4; ++i) {
+  const auto bin = [&](int i) {
+    return walls[static_cast<std::size_t>((i + kWallBins) % kWallBins)];
+  };
+  for (int i = 0; i < kWallBins / 4; ++i) {
     double both = 0;
     for (int side = 0; side < 4; ++side) both += bin(9 * side + i) + bin(9 * side + i + 1);
     if (both > best) best = both, at = i;
@@ -152,7 +154,7 @@ double least_width(const std::vector<Vec2>& hull) {
 Body describe_body(const std::vector<Vec3>& points, const std::vector<int>& welded,
                    const std::vector<Face>& faces, const std::vector<int>& chosen) {
   Body body;
-  std::array<double, kBins> walls{};
+  std::array<double, kWallBins> walls{};
   for (const int t : chosen) {
     const Face& f = faces[t];
     for (const int v : f) body.box.extend(points[v]);
@@ -161,7 +163,7 @@ Body describe_body(const std::vector<Vec3>& points, const std::vector<int>& weld
     body.area += area;
     if (!(std::abs(n.z()) < 0.5 * area)) continue;
     const double turn = std::atan2(n.y(), n.x()) / (2 * std::numbers::pi) + 1;
-    walls[static_cast<std::size_t>(turn * kBins) % kBins] += area;
+    walls[static_cast<std::size_t>(turn * kWallBins) % kWallBins] += area;
   }
   const Vec3 size = body.box.size();
   body.is_wide = std::max(size.x(), size.y()) > kWide;

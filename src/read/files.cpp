@@ -65,7 +65,7 @@ bool is_in(const std::string& extension, const char* const (&list)[N]) {
   return std::find(std::begin(list), std::end(list), extension) != std::end(list);
 }
 
-std::string extension_of(const fs::path& path) { return lower(path.extension().string()); }
+std::string ending_of(const fs::path& path) { return lower(path.extension().string()); }
 
 /// The first bytes of a regular file; empty where it cannot be read.
 std::string head(const fs::path& path) {
@@ -111,7 +111,7 @@ bool is_passed_over(const fs::path& path) {
   const std::string name = path.filename().string();
   if (name.starts_with("._") || name.ends_with("_offset.xyz")) return true;
   std::error_code error;
-  return is_in(extension_of(path), kTables) && fs::is_regular_file(path, error) &&
+  return is_in(ending_of(path), kTables) && fs::is_regular_file(path, error) &&
          !is_point_table(as_text(head(path)));
 }
 
@@ -230,12 +230,12 @@ std::string lower(std::string s) {
 }
 
 bool is_supported(const fs::path& path) {
-  const std::string e = extension_of(path);
+  const std::string e = ending_of(path);
   return is_in(e, kMeshes) || is_in(e, kClouds) || is_in(e, kTables);
 }
 
 std::string foreign_advice(const fs::path& path) {
-  const std::string e = extension_of(path);
+  const std::string e = ending_of(path);
   for (const Foreign& f : kForeign)
     if (e == f.extension) {
       const std::string advice = f.advice;

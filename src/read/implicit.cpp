@@ -16,9 +16,9 @@ namespace {
 
 constexpr int kMostLevels = 32;
 constexpr std::uint64_t kMostBits = std::uint64_t{1} << 27;  // of one subtree: 16 MiB
-constexpr std::size_t kHeader = 24;
+constexpr std::size_t kHeaderOfSubtree = 24;
 
-const Json& member(const Json& json, const char* key) {
+const Json& any_member(const Json& json, const char* key) {
   static const Json none;
   const auto found = json.is_object() ? json.find(key) : json.end();
   return json.is_object() && found != json.end() ? *found : none;
@@ -26,7 +26,7 @@ const Json& member(const Json& json, const char* key) {
 
 /// A whole number from `least` to `most`; −1: it is none.
 std::int64_t number(const Json& json, const char* key, std::int64_t least, std::int64_t most) {
-  const Json& value = member(json, key);
+  const Json& value = any_member(json, key);
   if (!value.is_number_integer()) return -1;
   const auto n = value.get<std::int64_t>();
   return n < least || n > most ? -1 : n;
@@ -43,14 +43,15 @@ std::pair<Json, std::string> parts_of(const std::string& path, const std::string
   std::string text = bytes, rest;
   if (bytes.starts_with("subt")) {
     std::uint64_t json = 0, binary = 0;
-    if (bytes.size() >= kHeader) {
+    if (bytes.size() >= kHeaderOfSubtree) {
       std::memcpy(&json, bytes.data() + 8, sizeof json);
       std::memcpy(&binary, bytes.data() + 16, sizeof binary);
     }
-    const std::uint64_t room = bytes.size() < kHeader ? 0 : bytes.size() - kHeader;
+    const std::uint64_t room =
+        bytes.size() < kHeaderOfSubtree ? 0 : bytes.size() - kHeaderOfSubtree;
     if (json == 0 || json > room || binary > room - json) fail(path, "is cut off");
-    text = bytes.substr(kHeader, json);
-    rest = bytes.substr(kHeader + json, binary);
+    text = bytes.substr(kHeaderOfSubtree, json);
+    rest = bytes.substr(kHeaderOfSubtree + json, binary);
   }
   Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) fail(path, "is no subtree: neither JSON nor its binary form");
@@ -60,17 +61,17 @@ std::pair<Json, std::string> parts_of(const std::string& path, const std::string
 }  // namespace
 
 ImplicitTiling implicit_tiling(const std::string& path, const Json& tile) {
-  const Json& own = member(tile, "implicitTiling");
+  const Json& own = any_member(tile, "implicitTiling");
   const Json& json =
-      own.is_object() ? own : member(member(tile, "extensions"), "3DTILES_implicit_tiling");
+      own.is_object() ? own : any_member(any_member(tile, "extensions"), "3DTILES_implicit_tiling");
   ImplicitTiling out;
-  const Json& scheme = member(json, "subdivisionScheme");
+  const Json& scheme = any_member(json, "subdivisionScheme");
   if (scheme == "OCTREE") out.branches = 8;
   out.subtree_levels = static_cast<int>(number(json, "subtreeLevels", 1, kMostLevels));
   const std::int64_t available = number(json, "availableLevels", 1, kMostLevels);
   const std::int64_t last = number(json, "maximumLevel", 0, kMostLevels - 1);
   out.levels = static_cast<int>(available > 0 ? available : last + 1);
-  const Json& uri = member(member(json, "subtrees"), "uri");
+  const Json& uri = any_member(any_member(json, "subtrees"), "uri");
   const bool is_known = scheme == "QUADTREE" || scheme == "OCTREE";
   if (!is_known || out.subtree_levels < 1 || out.levels < 1 || !uri.is_string())
     fail(path, "its implicit tiling makes no sense: scheme, levels or subtrees are missing");
@@ -103,7 +104,7 @@ Subtree::Subtree(const std::string& path, const std::string& bytes, const Implic
     : branches_(tiling.branches) {
   const auto [json, inside] = parts_of(path, bytes);
   const auto view = [&, &own = json, &rest = inside](std::int64_t i) {
-    const Json& views = member(own, "bufferViews");
+    const Json& views = any_member(own, "bufferViews");
     if (!views.is_array() || i < 0 || static_cast<std::size_t>(i) >= views.size())
       fail(path, "names a buffer view that it does not have");
     const Json& v = views[static_cast<std::size_t>(i)];
@@ -111,10 +112,10 @@ Subtree::Subtree(const std::string& path, const std::string& bytes, const Implic
     const std::int64_t buffer = number(v, "buffer", 0, kMost),
                        length = number(v, "byteLength", 1, kMost);
     const std::int64_t offset = v.contains("byteOffset") ? number(v, "byteOffset", 0, kMost) : 0;
-    const Json& buffers = member(own, "buffers");
+    const Json& buffers = any_member(own, "buffers");
     if (!buffers.is_array() || buffer < 0 || static_cast<std::size_t>(buffer) >= buffers.size())
       fail(path, "names a buffer that it does not have");
-    const Json& uri = member(buffers[static_cast<std::size_t>(buffer)], "uri");
+    const Json& uri = any_member(buffers[static_cast<std::size_t>(buffer)], "uri");
     const std::string all = uri.is_string() ? read(uri.get<std::string>()) : rest;
     if (offset < 0 || length < 0 || static_cast<std::size_t>(offset + length) > all.size())
       fail(path, "a buffer view reaches beyond its buffer");
@@ -135,9 +136,9 @@ Subtree::Subtree(const std::string& path, const std::string& bytes, const Implic
   };
   const std::uint64_t leaves = power(branches_, tiling.subtree_levels);
   const std::uint64_t all = index_of(tiling.subtree_levels, 0);
-  tiles_ = bits(member(json, "tileAvailability"), all);
-  subtrees_ = bits(member(json, "childSubtreeAvailability"), leaves);
-  const Json& contents = member(json, "contentAvailability");
+  tiles_ = bits(any_member(json, "tileAvailability"), all);
+  subtrees_ = bits(any_member(json, "childSubtreeAvailability"), leaves);
+  const Json& contents = any_member(json, "contentAvailability");
   if (contents.is_array())
     for (const Json& content : contents) contents_.push_back(bits(content, all));
   else if (contents.is_object())

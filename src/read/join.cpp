@@ -9,7 +9,7 @@ namespace colod::mesh_io {
 namespace {
 
 constexpr double kCovered = 0.5;   // of a body's cells: it stands on or in the other one
-constexpr double kFlat = 0.25;     // of its width: a body so low that carries others is ground
+constexpr double kLow = 0.25;      // of its width: a body so low that carries others is ground
 constexpr std::size_t kRoomy = 2;  // times the cells of what is in a building; a roof has fewer
 
 }  // namespace
@@ -60,7 +60,7 @@ void Joiner::find_carriers() {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = bodies_[b];
     const Vec3 size = body.box.size();
-    const bool is_low = size.z() <= kFlat * std::min(size.x(), size.y());
+    const bool is_low = size.z() <= kLow * std::min(size.x(), size.y());
     if (is_element_[b] || (body.has_building_shape && !is_low)) continue;
     const bool is_lowest = std::none_of(of_body_[b].begin(), of_body_[b].end(), [&](int c) {
       return bodies_[other(c, static_cast<int>(b))].box.min.z() < body.box.min.z() - kStep;

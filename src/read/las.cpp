@@ -35,7 +35,7 @@ constexpr std::array<PointFormat, 11> kFormats = {{{20, 0},
                                                    {59, 0},
                                                    {67, 30}}};
 
-struct Header {
+struct LasHeader {
   int format = 0;
   bool is_packed = false;
   std::size_t begin = 0, length = 0;  ///< of the points, and of one of them
@@ -50,14 +50,14 @@ T value_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-Header read_header(const std::string& path, std::string_view bytes) {
+LasHeader read_las_header(const std::string& path, std::string_view bytes) {
   if (bytes.size() < kLeastHeader || !bytes.starts_with("LASF"))
     fail(path, "LAS: truncated within its header, or another format");
   const int major = value_at<std::uint8_t>(bytes, 24), minor = value_at<std::uint8_t>(bytes, 25);
   if (major != 1 || minor > 4)
     fail(path, "LAS: version " + std::to_string(major) + "." + std::to_string(minor) +
                    " is not read; 1.0 to 1.4 are");
-  Header h;
+  LasHeader h;
   const int format = value_at<std::uint8_t>(bytes, 104);
   h.is_packed = format >= 64;
   h.format = format & 63;
@@ -81,7 +81,7 @@ Header read_header(const std::string& path, std::string_view bytes) {
 }
 
 /// The part of a file that its header promises.
-void check_length(const std::string& path, const Header& h, std::size_t size) {
+void check_length(const std::string& path, const LasHeader& h, std::size_t size) {
   const std::uint64_t there = h.begin < size ? (size - h.begin) / h.length : 0;
   if (h.begin < kLeastHeader || there < h.count)
     fail(path, "LAS: truncated: its header says " + std::to_string(h.count) + " points from byte " +
@@ -138,7 +138,7 @@ std::vector<Rgb> to_bytes(const std::vector<std::array<std::uint16_t, 3>>& color
   return out;
 }
 
-std::array<std::size_t, kKindsOfClass> count_classes(const char* first, const Header& h,
+std::array<std::size_t, kKindsOfClass> count_classes(const char* first, const LasHeader& h,
                                                      std::size_t& withheld) {
   std::array<std::size_t, kKindsOfClass> count{};
   for (std::uint64_t i = 0; i < h.count; ++i) {
@@ -151,7 +151,7 @@ std::array<std::size_t, kKindsOfClass> count_classes(const char* first, const He
 }  // namespace
 
 RawFile read_las(const std::string& path, std::string_view bytes) {
-  const Header h = read_header(path, bytes);
+  const LasHeader h = read_las_header(path, bytes);
   if (h.is_packed) fail(path, "LAS: its points are packed, as in LAZ: name it .laz");
   check_length(path, h, bytes.size());
   RawFile raw;
@@ -182,7 +182,7 @@ RawFile read_las(const std::string& path, std::string_view bytes) {
 }
 
 RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options) {
-  const Header h = read_header(path, bytes);
+  const LasHeader h = read_las_header(path, bytes);
   if (!h.is_packed) return read_las(path, bytes);
   constexpr double kMebi = 1 << 20;
   if (static_cast<double>(h.count) * static_cast<double>(h.length) > options.input_memory * kMebi)

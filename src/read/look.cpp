@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLargestMtl = 64;  // MiB
 
-std::string trimmed(std::string_view s) {
+std::string unquoted(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
   while (!s.empty() && (s.back() == ' ' || s.back() == '\t')) s.remove_suffix(1);
   if (s.size() > 1 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
@@ -39,7 +39,7 @@ std::pair<int, int> arguments_of(const std::string& option) {
 
 /// The next token without taking it.
 std::string peek(const Lines& lines) {
-  const std::string rest = trimmed(lines.rest());
+  const std::string rest = unquoted(lines.rest());
   return rest.substr(0, rest.find_first_of(" \t"));
 }
 
@@ -89,7 +89,7 @@ Rgb rgb_of(double r, double g, double b) {
 }
 
 void MtlLibrary::load(const std::string& names) {
-  if (load_file(trimmed(names))) return;
+  if (load_file(unquoted(names))) return;
   bool has_found = false;
   std::string_view rest = names;
   while (!rest.empty()) {
@@ -151,7 +151,7 @@ void MtlLibrary::set_image(Lines& lines, MtlMaterial& m) {
     for (std::size_t i = 0; target && i < std::min<std::size_t>(2, numbers.size()); ++i)
       (*target)[static_cast<int>(i)] = numbers[i];
   }
-  m.material.image = image_number(images_, image_beside(path_, trimmed(lines.rest())));
+  m.material.image = image_number(images_, image_beside(path_, unquoted(lines.rest())));
   m.material.cutoff = kCutoff;
 }
 
@@ -161,7 +161,7 @@ void MtlLibrary::parse(const std::string& file, const std::string& text) {
   while (lines.next()) {
     const std::string key = lower(std::string(lines.token()));
     if (key == "newmtl") {
-      m = &materials_[static_cast<std::size_t>(number(trimmed(lines.rest())))];
+      m = &materials_[static_cast<std::size_t>(number(unquoted(lines.rest())))];
       m->is_defined = true;
     } else if (m && key == "kd") {
       double rgb[3] = {0.6, 0.6, 0.6};

@@ -116,9 +116,9 @@ Header read_header(const std::string& path, const std::string& bytes) {
 }
 
 /// Numbers of the body one after the other, whatever the encoding.
-class Body {
+class PlyBody {
  public:
-  Body(const std::string& path, const std::string& bytes, const Header& header)
+  PlyBody(const std::string& path, const std::string& bytes, const Header& header)
       : path_(path),
         data_(std::string_view(bytes).substr(header.body)),
         lines_(path, data_, header.lines),
@@ -191,7 +191,7 @@ class Body {
   long long index_ = 0;
 };
 
-void skip(Body& body, const Property& p) {
+void skip(PlyBody& body, const Property& p) {
   const int n = p.is_list ? body.next_integer(p.count) : 1;
   for (int i = 0; i < n; ++i) body.next(p.type);
 }
@@ -216,7 +216,7 @@ double shade(double value, Type type) {
   return type == Type::kUint16 || type == Type::kInt16 ? value / 65535 : value / 255;
 }
 
-void read_vertices(Body& body, const Element& element, RawFile& raw) {
+void read_vertices(PlyBody& body, const Element& element, RawFile& raw) {
   static constexpr const char* kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
   std::vector<int> slot(element.properties.size(), -1);
   int found = 0;
@@ -260,7 +260,7 @@ struct FaceLook {
 /// Faces one by one; which property is what is looked up once.
 class FaceReader {
  public:
-  FaceReader(Body& body, const Element& element, RawFile& raw)
+  FaceReader(PlyBody& body, const Element& element, RawFile& raw)
       : body_(body), element_(element), raw_(raw) {
     list_ = element.find("vertex_indices");
     if (list_ < 0) list_ = element.find("vertex_index");
@@ -334,7 +334,7 @@ class FaceReader {
                                 rgb_of(look.rgb[0], look.rgb[1], look.rgb[2]));
   }
 
-  Body& body_;
+  PlyBody& body_;
   const Element& element_;
   RawFile& raw_;
   int list_, object_, uvs_, texture_;
@@ -361,7 +361,7 @@ void add_textures(const std::string& path, const std::vector<std::string>& files
 
 RawFile read_ply(const std::string& path, const std::string& bytes) {
   const Header header = read_header(path, bytes);
-  Body body(path, bytes, header);
+  PlyBody body(path, bytes, header);
   RawFile raw;
   raw.remarks = header.remarks;
   bool has_vertices = false;

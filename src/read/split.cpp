@@ -12,6 +12,7 @@
 #include "alternatives.h"
 #include "bodies.h"
 #include "core/union_find.h"
+#include "files.h"
 #include "join.h"
 
 namespace colod::mesh_io {
@@ -21,16 +22,9 @@ namespace {
 constexpr std::size_t kMostCells = 20'000'000;  // 5 km² of plan; what comes later stands by itself
 constexpr double kSlope = 0.3;  // of the distance that feet of bodies that stand apart may differ
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_between(char c) { return c == ' ' || c == '_' || c == '-' || c == '.'; }
-
-std::string lower(std::string s) {
-  for (char& c : s) c = lower(c);
-  return s;
-}
 
 /// Whether the last word of a name, or an IFC class, says that this is no whole building.
 bool is_element(const std::string& name) {

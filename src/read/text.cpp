@@ -148,7 +148,7 @@ Vec3 read_vec3_across(Lines& lines) {
   return {x, y, z};
 }
 
-std::string trimmed(std::string_view s) {
+std::string without_blanks(std::string_view s) {
   while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
   while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
   return std::string(s);
@@ -206,13 +206,13 @@ class ObjReader {
     } else if (key == "f") {
       add_face();
     } else if (key == "g") {
-      group_ = groups_.number(trimmed(lines_.rest()));
+      group_ = groups_.number(without_blanks(lines_.rest()));
     } else if (key == "o") {
-      object_ = objects_.number(trimmed(lines_.rest()));
+      object_ = objects_.number(without_blanks(lines_.rest()));
     } else if (key == "mtllib") {
-      library_.load(trimmed(lines_.rest()));
+      library_.load(without_blanks(lines_.rest()));
     } else if (key == "usemtl") {
-      material_ = library_.number(trimmed(lines_.rest()));
+      material_ = library_.number(without_blanks(lines_.rest()));
     }
   }
 

@@ -20,12 +20,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMostEntries = 2'000'000;  // as many as a tileset may have tiles
+constexpr std::uint64_t kMostMembers = 2'000'000;  // as many as a tileset may have tiles
 constexpr std::size_t kLongestName = 1024;         // bytes, with folders
-constexpr std::uint64_t kMib = 1 << 20;
+constexpr std::uint64_t kMebibyte = 1 << 20;
 // Text packs to a thirtieth, meshes and pictures to two thirds: what grows further is a bomb. Small
 // ones harm nobody.
-constexpr std::uint64_t kMostTimes = 100, kHarmless = 64 * kMib;
+constexpr std::uint64_t kMostTimes = 100, kHarmless = 64 * kMebibyte;
 constexpr const char* kIndex = "@3dtilesIndex1@";
 
 struct Closer {
@@ -33,13 +33,13 @@ struct Closer {
 };
 using Zip = std::unique_ptr<void, Closer>;
 
-struct Entry {
+struct ZipEntry {
   std::string name;
   unz64_file_pos place;
   unz_file_info64 info;
 };
 
-std::string in_mib(std::uint64_t bytes) { return std::to_string(bytes / kMib) + " MiB"; }
+std::string in_mib(std::uint64_t bytes) { return std::to_string(bytes / kMebibyte) + " MiB"; }
 
 Zip open_zip(const std::string& path) {
   Zip zip(unzOpen64(path.c_str()));
@@ -48,17 +48,17 @@ Zip open_zip(const std::string& path) {
   return zip;
 }
 
-std::vector<Entry> list_entries(const std::string& path, unzFile zip) {
+std::vector<ZipEntry> list_entries(const std::string& path, unzFile zip) {
   unz_global_info64 all;
   if (unzGetGlobalInfo64(zip, &all) != UNZ_OK) fail(path, "its list of entries is damaged");
-  if (all.number_entry > kMostEntries)
+  if (all.number_entry > kMostMembers)
     fail(path, "says that it has " + std::to_string(all.number_entry) + " entries, more than " +
-                   std::to_string(kMostEntries));
-  std::vector<Entry> out;
+                   std::to_string(kMostMembers));
+  std::vector<ZipEntry> out;
   std::vector<char> name(1 << 16);
   int state = UNZ_OK;
   for (std::uint64_t i = 0; i < all.number_entry && state == UNZ_OK; ++i) {
-    Entry e;
+    ZipEntry e;
     state = i == 0 ? unzGoToFirstFile(zip) : unzGoToNextFile(zip);
     if (state == UNZ_OK)
       state =
@@ -76,11 +76,11 @@ std::vector<Entry> list_entries(const std::string& path, unzFile zip) {
 
 /// Before anything is unpacked.
 void check_room(const std::string& path, const std::string& folder,
-                const std::vector<Entry>& entries) {
+                const std::vector<ZipEntry>& entries) {
   const std::uint64_t room = fs::space(folder).available, own = fs::file_size(path);
   const std::uint64_t most = std::max(kHarmless, kMostTimes * own);
   std::uint64_t total = 0;
-  for (const Entry& e : entries) {
+  for (const ZipEntry& e : entries) {
     const std::uint64_t size = e.info.uncompressed_size;
     total = size > UINT64_MAX - total ? UINT64_MAX : total + size;
   }
@@ -132,13 +132,13 @@ std::string fault_of(const unz_file_info64& info, std::uint64_t most_bytes) {
            ", which is not read: stored and deflate are";
   if (info.uncompressed_size > most_bytes)
     return "takes " + in_mib(info.uncompressed_size) + ", more than --input-memory " +
-           std::to_string(most_bytes / kMib) + " allows one file";
+           std::to_string(most_bytes / kMebibyte) + " allows one file";
   return "";
 }
 
 /// Bytes of an entry → `take`, which says whether it can go on; what went wrong, or nothing.
 template <typename Take>
-std::string read_entry(unzFile zip, const Entry& e, const Take& take) {
+std::string read_entry(unzFile zip, const ZipEntry& e, const Take& take) {
   unz64_file_pos place = e.place;
   if (unzGoToFilePos64(zip, &place) != UNZ_OK || unzOpenCurrentFile(zip) != UNZ_OK)
     return "is damaged: its own header contradicts the list of entries";
@@ -155,7 +155,7 @@ std::string read_entry(unzFile zip, const Entry& e, const Take& take) {
   return is_whole ? "" : "is damaged: its bytes contradict its length or checksum";
 }
 
-std::string write_entry(const std::string& path, unzFile zip, const Entry& e,
+std::string write_entry(const std::string& path, unzFile zip, const ZipEntry& e,
                         const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
@@ -176,11 +176,11 @@ std::string write_entry(const std::string& path, unzFile zip, const Entry& e,
 std::vector<LeftOut> unzip(const std::string& path, const std::string& folder,
                            std::uint64_t most_bytes) {
   const Zip zip = open_zip(path);
-  const std::vector<Entry> entries = list_entries(path, zip.get());
+  const std::vector<ZipEntry> entries = list_entries(path, zip.get());
   check_room(path, folder, entries);
   std::vector<LeftOut> out;
   std::set<std::string> seen;
-  for (const Entry& e : entries) {
+  for (const ZipEntry& e : entries) {
     LeftOut entry{e.name, "", fault_of_name(e.name)};
     if (entry.cause.empty()) {
       if (e.name.ends_with('/') || e.name == kIndex) continue;
@@ -203,7 +203,7 @@ std::vector<LeftOut> unzip(const std::string& path, const std::string& folder,
 std::optional<std::string> read_zipped(const std::string& path, const std::string& name,
                                        std::uint64_t most_bytes) {
   const Zip zip = open_zip(path);
-  for (const Entry& e : list_entries(path, zip.get())) {
+  for (const ZipEntry& e : list_entries(path, zip.get())) {
     if (!fault_of_name(e.name).empty() || parts_of(e.name) != parts_of(name)) continue;
     if (!fault_of(e.info, most_bytes).empty()) return {};
     std::string bytes;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/flat.h"
 #include "parameters.h"
 
 namespace colod {
@@ -23,21 +24,66 @@ std::vector<Edge> open_edges(const Mesh& mesh) {
   return open;
 }
 
-int straight_sides(const Mesh& mesh, const std::vector<Edge>& open, const Box& box) {
-  const double in_plane = std::max(kStraight, kStraightShare * box.size().head<2>().maxCoeff());
-  std::array<double, 4> spanned{};
-  for (const Edge& e : open)
-    for (int side = 0; side < 4; ++side) {
-      const Vec3 &a = mesh.vertices[e[0]], &b = mesh.vertices[e[1]];
-      const int across = side / 2;
-      const double at = side % 2 ? box.max[across] : box.min[across];
-      if (std::max(std::abs(a[across] - at), std::abs(b[across] - at)) <= in_plane)
-        spanned[static_cast<std::size_t>(side)] += std::abs(a[1 - across] - b[1 - across]);
+namespace {
+
+/// An upright plane along a side of the plan's hull.
+struct Side {
+  Vec2 from, along;    ///< a unit vector
+  double in_plane;     ///< metres that still count
+  double length = 0;   ///< of the hull in the plane
+  double spanned = 0;  ///< metres of open edges in it
+
+  bool has(const Vec2& p) const { return std::abs(cross(along, p - from)) <= in_plane; }
+  double at(const Vec2& p) const { return along.dot(p - from); }
+};
+
+using Line = std::array<Vec2, 2>;
+
+/// Those of the hull that are nearly as long as it is, each once.
+std::vector<Side> long_sides(const std::vector<Vec2>& hull, double in_plane) {
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < hull.size(); ++i)
+    lines.push_back({hull[i], hull[(i + 1) % hull.size()]});
+  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
+    return (a[1] - a[0]).squaredNorm() > (b[1] - b[0]).squaredNorm();
+  });
+  std::vector<Side> sides;
+  for (const auto& [a, b] : lines) {
+    Side side{a, (b - a).normalized(), in_plane};
+    const auto is_it = [&](const Side& s) { return s.has(a) && s.has(b); };
+    if (std::any_of(sides.begin(), sides.end(), is_it)) continue;
+    std::array<double, 2> own = {0, 0}, whole = {0, 0};
+    for (const Vec2& p : hull) {
+      const double at = side.at(p);
+      whole = {std::min(whole[0], at), std::max(whole[1], at)};
+      if (side.has(p)) own = {std::min(own[0], at), std::max(own[1], at)};
     }
-  int count = 0;
-  for (int side = 0; side < 4; ++side)
-    count += spanned[static_cast<std::size_t>(side)] >= kSpanned * box.size()[side < 2 ? 1 : 0];
-  return count;
+    side.length = own[1] - own[0];
+    if (side.length >= kLongSide * (whole[1] - whole[0])) sides.push_back(side);
+  }
+  return sides;
+}
+
+Vec2 plan_of(const Mesh& mesh, int vertex) {
+  return mesh.vertices[static_cast<std::size_t>(vertex)].head<2>();
+}
+
+}  // namespace
+
+int straight_sides(const Mesh& mesh, const std::vector<Edge>& open) {
+  std::vector<Vec2> plan;
+  for (const Vec3& v : mesh.vertices)
+    if (v.allFinite()) plan.push_back(v.head<2>());
+  const double width = bounding_box(mesh.vertices).size().head<2>().maxCoeff();
+  std::vector<Side> sides =
+      long_sides(convex_hull(std::move(plan)), std::max(kStraightSide, kStraightShare * width));
+  for (const Edge& e : open)
+    for (Side& side : sides) {
+      const Vec2 a = plan_of(mesh, e[0]), b = plan_of(mesh, e[1]);
+      if (side.has(a) && side.has(b)) side.spanned += std::abs(side.at(b) - side.at(a));
+    }
+  return static_cast<int>(std::count_if(
+      sides.begin(), sides.end(), [](const Side& s) { return s.spanned >= kSpanned * s.length; }));
 }
 
 std::vector<char> ends_at_top(const Mesh& mesh, const std::vector<Edge>& open,

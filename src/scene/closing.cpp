@@ -15,7 +15,7 @@ namespace {
 
 using namespace parameters::closing;
 
-using Polygon = std::vector<Vec2>;
+using FlatPolygon = std::vector<Vec2>;
 
 Vec2 snapped(const Vec2& p) { return (p / kGrid).array().round() * kGrid; }
 
@@ -28,12 +28,12 @@ Vec2 crossing(Vec2 a, Vec2 b, int axis, double at) {
 }
 
 /// A convex polygon cut along all lines across an axis that it meets.
-void slice(Polygon rest, int axis, std::vector<Polygon>& out) {
+void slice(FlatPolygon rest, int axis, std::vector<FlatPolygon>& out) {
   const auto [least, most] = std::minmax_element(
       rest.begin(), rest.end(), [&](const Vec2& a, const Vec2& b) { return a[axis] < b[axis]; });
   const double end = (*most)[axis];
   for (double at = kSide * (std::floor((*least)[axis] / kSide) + 1); at < end; at += kSide) {
-    Polygon low, high;
+    FlatPolygon low, high;
     for (std::size_t i = 0; i < rest.size(); ++i) {
       const Vec2 &a = rest[i], &b = rest[(i + 1) % rest.size()];
       if (a[axis] <= at) low.push_back(a);
@@ -106,11 +106,11 @@ Rgb ClosingGround::color_at(const Vec2& p) const {
 Source ClosingGround::below(const std::vector<Territories::Piece>& pieces) const {
   Source out;
   for (const Territories::Piece& piece : pieces) {
-    std::vector<Polygon> strips, squares;
+    std::vector<FlatPolygon> strips, squares;
     const auto& c = piece.corners;
     slice({snapped(c[0]), snapped(c[1]), snapped(c[2])}, 0, strips);
-    for (Polygon& strip : strips) slice(std::move(strip), 1, squares);
-    for (const Polygon& p : squares)
+    for (FlatPolygon& strip : strips) slice(std::move(strip), 1, squares);
+    for (const FlatPolygon& p : squares)
       for (std::size_t k = 1; k + 1 < p.size(); ++k) add_face({p[0], p[k], p[k + 1]}, out);
   }
   return joined({out});

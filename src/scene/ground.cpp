@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 
 #include "left_out.h"
 #include "parameters.h"
@@ -20,8 +19,6 @@ namespace colod {
 namespace {
 
 using namespace parameters::ground;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Raster {
   Vec2 origin;

@@ -18,10 +18,10 @@ namespace {
 
 using namespace parameters::whole_place;
 
-HeightMap heights_of(const Source& source, const Box& box) {
+HeightMap height_map_of(const Source& source, const Box& box) {
   HeightMap map;
   const Vec3 size = box.size();
-  map.cell = std::max(parameters::survey::kCell, std::sqrt(size.x() * size.y() / kMostCells));
+  map.cell = std::max(parameters::survey::kCell, std::sqrt(size.x() * size.y() / kMostCellsOfPlan));
   map.origin = box.min.head<2>();
   map.width = static_cast<int>(std::ceil(size.x() / map.cell)) + 1;
   map.height = static_cast<int>(std::ceil(size.y() / map.cell)) + 1;
@@ -78,8 +78,8 @@ std::vector<Group> groups_of(const HeightMap& map, const SceneClasses& classes,
       if (touches(map, classes, x, y, SceneClass::kBuilding, false)) group.outline += map.cell;
       if (ends[map.at(x, y)] && touches(map, classes, x, y, SceneClass::kNothing, true))
         group.cut_off[side_of(map, x, y)] += map.cell;
-      for (int v = std::max(0, y - kReach); v <= std::min(map.height - 1, y + kReach); ++v)
-        for (int u = std::max(0, x - kReach); u <= std::min(map.width - 1, x + kReach); ++u) {
+      for (int v = std::max(0, y - kTogether); v <= std::min(map.height - 1, y + kTogether); ++v)
+        for (int u = std::max(0, x - kTogether); u <= std::min(map.width - 1, x + kTogether); ++u) {
           const std::size_t next = map.at(u, v);
           if (is_done[next] || classes.of_cell[next] != SceneClass::kBuilding) continue;
           is_done[next] = 1;
@@ -124,7 +124,7 @@ std::string percent(double share) {
 }
 
 /// What a plan from above tells.
-struct Plan {
+struct PlaceFromAbove {
   bool is_tile = false;  ///< two sides of it end straight, and most of it at the top
   double side = 0;       ///< metres, the shorter one of its box
   double covered = 0;    ///< 0..1 of its box
@@ -134,14 +134,14 @@ struct Plan {
   std::vector<Group> groups;  ///< of buildings
 };
 
-Plan plan_of(const Mesh& mesh, const std::vector<Edge>& open, const HeightMap& map) {
+PlaceFromAbove place_of(const Mesh& mesh, const std::vector<Edge>& open, const HeightMap& map) {
   const SceneClasses classes = classify(map);
   const auto count = [&](SceneClass c) {
     return static_cast<double>(std::count(classes.of_cell.begin(), classes.of_cell.end(), c));
   };
   const double cells = static_cast<double>(map.size());
   const double covered = std::max(cells - count(SceneClass::kNothing), 1.0);
-  Plan plan;
+  PlaceFromAbove plan;
   plan.covered = covered / cells;
   plan.ground = count(SceneClass::kGround) / covered;
   const std::vector<char> ends = ends_at_top(mesh, open, map);
@@ -151,19 +151,19 @@ Plan plan_of(const Mesh& mesh, const std::vector<Edge>& open, const HeightMap& m
   return plan;
 }
 
-bool is_bare(const Plan& plan, std::ptrdiff_t houses) {
+bool is_bare(const PlaceFromAbove& plan, std::ptrdiff_t houses) {
   if (plan.ground < kBareGround) return false;
   return (plan.side >= kLeastSide && houses == 0) || (plan.is_tile && plan.built <= kBareBuilt);
 }
 
-bool is_cut_through(const Plan& plan) {
+bool is_cut_through(const PlaceFromAbove& plan) {
   const bool has_ground = std::min(plan.rim.ground, plan.ground) >= kGroundAtRim;
   const bool is_large_tile = plan.is_tile && plan.side >= kLeastSide;
   return (plan.is_tile || plan.covered >= kFilled) && (has_ground || is_large_tile) &&
          std::any_of(plan.groups.begin(), plan.groups.end(), is_cut_off);
 }
 
-std::string reason(const Plan& plan) {
+std::string reason(const PlaceFromAbove& plan) {
   const auto houses = std::count_if(plan.groups.begin(), plan.groups.end(),
                                     [](const Group& g) { return g.area >= kLeastHouse; });
   if (plan.ground >= kLeastGround && houses >= (plan.is_tile ? kLeastHousesOfTile : kLeastHouses))
@@ -185,9 +185,9 @@ PlaceDoubt looks_like_scene(const Source& source) {
   const double side = std::min(box.size().x(), box.size().y());
   if (side < kLeastPiece || drawn_share(source.mesh) >= kLeastDrawn) return {};
   const std::vector<Edge> open = open_edges(source.mesh);
-  const int straight = straight_sides(source.mesh, open, box);
+  const int straight = straight_sides(source.mesh, open);
   if (straight < kStraightSides && side < kLeastSide) return {};
-  Plan plan = plan_of(source.mesh, open, heights_of(source, box));
+  PlaceFromAbove plan = place_of(source.mesh, open, height_map_of(source, box));
   plan.is_tile = straight >= kStraightSides && plan.rim.at_top >= kMostAtTop;
   plan.side = side;
   if (const std::string why = reason(plan); side >= kLeastTile && !why.empty()) return {why, true};

@@ -90,7 +90,7 @@ void keep_far(const Ring& ring, std::size_t from, std::size_t to, std::vector<ch
   }
 }
 
-Ring simplified(const Ring& ring) {
+Ring with_fewer_corners(const Ring& ring) {
   std::size_t far = 0;
   for (std::size_t i = 1; i < ring.size(); ++i)
     if ((ring[i] - ring[0]).norm() > (ring[far] - ring[0]).norm()) far = i;
@@ -170,7 +170,7 @@ Ring squared(const Ring& ring, double direction) {
 Ring straightened(const HeightMap& map, const std::vector<Corner>& corners, double& direction) {
   Ring ring;
   for (const Corner& c : corners) ring.push_back(map.origin + map.cell * Vec2(c[0], c[1]));
-  ring = simplified(ring);
+  ring = with_fewer_corners(ring);
   if (ring.size() < 3) return {};
   if (std::isnan(direction)) direction = main_direction(ring);
   const Ring square = squared(ring, direction);

@@ -63,15 +63,15 @@ constexpr double kMostCells = 64e6;  // of a map: a gibibyte
 
 namespace colod::parameters::terrain {
 
-constexpr double kWidest = 100;     // metres: blocks as wide as halls, to begin with
-constexpr double kNoise = 0.3;      // metres over what is expected, and …
-constexpr double kSlope = 0.12;     // … of a block's side: low roofs fill small blocks
-constexpr double kOnGround = 0.5;   // metres
-constexpr double kJoined = 0.6;     // of a hill's rim that goes on smoothly, drops the rest
-constexpr double kLevelStep = 0.2;  // metres between neighbours that are one level
-constexpr double kLeastLevel = 15;  // m²
-constexpr double kWall = 1.2;       // metres that a roof's rim steps down
-constexpr double kRoofRim = 0.65;   // of its steps that go down: a terrace has as many that go up
+constexpr double kWidest = 100;       // metres: blocks as wide as halls, to begin with
+constexpr double kNoiseOfCell = 0.3;  // metres over what is expected, and …
+constexpr double kSlope = 0.12;       // … of a block's side: low roofs fill small blocks
+constexpr double kAboveGround = 0.5;  // metres
+constexpr double kJoined = 0.6;       // of a hill's rim that goes on smoothly, drops the rest
+constexpr double kLevelStep = 0.2;    // metres between neighbours that are one level
+constexpr double kLeastLevel = 15;    // m²
+constexpr double kWall = 1.2;         // metres that a roof's rim steps down
+constexpr double kRoofRim = 0.65;     // of its steps that go down: a terrace has as many that go up
 constexpr double kDropping = 0.5;  // of the rim of a square of its area: where a roof ends it drops
 constexpr double kLeanBlock = 25;  // metres: most hold a piece of street or yard
 constexpr double kLeanReach = 2;   // metres over the plane from which on a block counts little
@@ -147,18 +147,19 @@ constexpr double kLeastEdge = 1e-3;  // metres, seen from above
 
 namespace colod::parameters::whole_place {
 
-constexpr double kMostCells = 4e6;
-constexpr double kLeastSide = 50;   // metres of the plan: a plot is narrower, or holds one house
-constexpr double kLeastTile = 18;   // metres, cut straight: a shed with its plot is smaller
-constexpr double kLeastPiece = 5;   // metres, cut straight, for a doubt: a row house, or a remnant
-constexpr double kStraight = 0.02;  // metres from the plane of a side: coordinates are rounded
+constexpr double kMostCellsOfPlan = 4e6;
+constexpr double kLeastSide = 50;  // metres of the plan: a plot is narrower, or holds one house
+constexpr double kLeastTile = 18;  // metres, cut straight: a shed with its plot is smaller
+constexpr double kLeastPiece = 5;  // metres, cut straight, for a doubt: a row house, or a remnant
+constexpr double kStraightSide = 0.02;   // metres from the plane of a side: coordinates are rounded
 constexpr double kStraightShare = 1e-3;  // of the plan, likewise
+constexpr double kLongSide = 0.6;        // of the plan along a side: a tile's shear is less
 constexpr double kSpanned = 0.9;         // of a side that the border spans
 constexpr int kStraightSides = 2;        // of four: at a scene's edge two may be ragged
 constexpr double kLeastGround = 0.3;     // of the plan
 constexpr double kLeastHouse = 30;       // m²: a garage is no second building
 constexpr int kLeastHouses = 3;          // that stand apart: two may be a house and its barn
-constexpr int kReach = 5;                // cells: 2 m between roofs is no gap
+constexpr int kTogether = 5;             // cells: 2 m between roofs is no gap
 constexpr int kLeastHousesOfTile = 2;    // where it is cut straight
 constexpr double kBareGround = 0.75;     // of the plan, where no building stands
 constexpr double kBareBuilt = 0.03;      // of a tile: the largest plots are 20 times a house

@@ -12,19 +12,19 @@ namespace {
 using namespace parameters::closing;
 
 /// A corner of a face, and with the next one an edge of it.
-struct Corner {
+struct RimEdge {
   std::size_t face, corner;
 };
 
 /// Edges that one face alone has.
-std::vector<Corner> open_edges(const Mesh& mesh) {
-  std::map<std::array<int, 2>, Corner> open;
+std::vector<RimEdge> rim_of(const Mesh& mesh) {
+  std::map<std::array<int, 2>, RimEdge> open;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = mesh.faces[f][k], b = mesh.faces[f][(k + 1) % 3];
       if (open.erase({b, a}) == 0) open[{a, b}] = {f, k};
     }
-  std::vector<Corner> out;
+  std::vector<RimEdge> out;
   for (const auto& [edge, at] : open) out.push_back(at);
   return out;
 }
@@ -42,7 +42,7 @@ class Skirts {
  public:
   Skirts(const ClosingGround& ground, Source& s) : ground_(ground), s_(s) {}
 
-  void hang(const Corner& edge) {
+  void hang(const RimEdge& edge) {
     const std::size_t k = edge.corner, next = (k + 1) % 3;
     const Face face = s_.mesh.faces[edge.face];
     const int a = face[k], b = face[next], below_a = below(a), below_b = below(b);
@@ -85,7 +85,7 @@ class Skirts {
 
 void add_skirts(const Territories& territories, const ClosingGround& ground, Source& cut) {
   Skirts skirts(ground, cut);
-  for (const Corner& edge : open_edges(cut.mesh)) {
+  for (const RimEdge& edge : rim_of(cut.mesh)) {
     const Face& face = cut.mesh.faces[edge.face];
     const auto at = [&](std::size_t k) {
       return cut.mesh.vertices[static_cast<std::size_t>(face[k % 3])];

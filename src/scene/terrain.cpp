@@ -107,7 +107,7 @@ Grid extreme(const Grid& from, bool is_least) {
 /// One level: blocks that lie near to what coarser ones expect are ground.
 Grid refined(const Grid& least, const Grid& coarse, double side) {
   Grid ground(least.width, least.height);
-  const auto allowed = static_cast<float>(kNoise + kSlope * side);
+  const auto allowed = static_cast<float>(kNoiseOfCell + kSlope * side);
   for (int y = 0; y < least.height; ++y)
     for (int x = 0; x < least.width; ++x)
       if (least.at(x, y) - between(coarse, x, y) <= allowed) ground.at(x, y) = least.at(x, y);
@@ -255,7 +255,7 @@ std::vector<float> find_terrain(const HeightMap& map) {
   for (std::size_t k = least.size() - 1; k-- > 0;) ground = refined(least[k], ground, side[k]);
   std::vector<char> is_ground(map.size(), 0);
   for (std::size_t i = 0; i < is_ground.size(); ++i)
-    is_ground[i] = least[0].z[i] - ground.z[i] < kOnGround;
+    is_ground[i] = least[0].z[i] - ground.z[i] < kAboveGround;
   const Grid top = calmed(map);
   Levels levels(top, map.cell, is_ground);
   levels.join_hills();

@@ -186,7 +186,7 @@ class Borders {
 /// A part of a face.
 using Polygon = std::vector<Vec3>;  // weights
 
-struct Flat {
+struct FlatFace {
   std::array<Vec2, 3> corners;
   Vec2 at(const Vec3& weights) const {
     return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
@@ -194,8 +194,8 @@ struct Flat {
 };
 
 /// What of a polygon lies to the left of a → b, and what to the right.
-void split(const Flat& face, const Polygon& polygon, const Vec2& a, const Vec2& b, Polygon& left,
-           Polygon& right) {
+void split(const FlatFace& face, const Polygon& polygon, const Vec2& a, const Vec2& b,
+           Polygon& left, Polygon& right) {
   left.clear(), right.clear();
   const Vec2 along = (b - a).normalized();
   std::vector<double> side;
@@ -240,10 +240,11 @@ struct Territories::Impl {
   }
 
   /// Parts of a face over a building's ground, or, of −1, over no one's. True: all of it is.
-  bool parts_of(const Flat& face, int building, std::vector<Polygon>& out) const;
+  bool parts_of(const FlatFace& face, int building, std::vector<Polygon>& out) const;
 };
 
-bool Territories::Impl::parts_of(const Flat& face, int building, std::vector<Polygon>& out) const {
+bool Territories::Impl::parts_of(const FlatFace& face, int building,
+                                 std::vector<Polygon>& out) const {
   const Vec2 low = face.corners[0].cwiseMin(face.corners[1]).cwiseMin(face.corners[2]);
   const Vec2 high = face.corners[0].cwiseMax(face.corners[1]).cwiseMax(face.corners[2]);
   std::vector<Polygon> open = {{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}}, next;
@@ -297,7 +298,7 @@ Territories::Territories(const std::vector<Footprint>& footprints)
       piece.corners[static_cast<std::size_t>(k)] = {face->vertex(k)->point().x(),
                                                     face->vertex(k)->point().y()};
     const auto& c = piece.corners;
-    if (cross(c[1] - c[0], c[2] - c[0]) < 2 * kLeastPiece) continue;
+    if (cross(c[1] - c[0], c[2] - c[0]) < 2 * kLeastPart) continue;
     const Vec2 middle = (c[0] + c[1] + c[2]) / 3;
     double least = kEaves;
     for (const int i : near.find(middle, middle)) {
@@ -338,7 +339,7 @@ Source Territories::cut_out(const Source& source, int building) const {
   const bool is_rest = building < 0;
   const Box* box = is_rest ? nullptr : &impl_->boxes[static_cast<std::size_t>(building)];
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    Flat flat;
+    FlatFace flat;
     Box own;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];

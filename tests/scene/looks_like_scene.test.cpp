@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "meshes.h"
 #include "scene/tiles.h"
@@ -37,6 +38,18 @@ TEST_CASE("a tile whose border cuts a house off is a piece of a scene") {
   CHECK(doubt.is_certain);
   CHECK_THAT(doubt.why,
              Catch::Contains("cuts through buildings") || Catch::Contains("2 buildings"));
+}
+
+TEST_CASE("a tile is known whichever way its sides run") {
+  const double side = GENERATE(20, 45), turn_deg = GENERATE(7, 30, 45), shear = GENERATE(0.0, 0.3);
+  CAPTURE(side, turn_deg, shear);
+  Source tile = tile_with(side, {house(side / 2, side - 6, 9, 6), house(3, 3, 6, 7)});
+  const double turn = turn_deg * std::numbers::pi / 180;
+  for (Vec3& p : tile.mesh.vertices) {
+    const double x = p.x() + shear * p.y(), y = p.y();
+    p = {std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y, p.z()};
+  }
+  CHECK(looks_like_scene(tile).is_certain);
 }
 
 TEST_CASE("a tile of terrain with a tree is a piece of terrain, one with a small house is not") {
