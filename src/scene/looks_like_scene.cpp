@@ -186,14 +186,15 @@ PlaceDoubt looks_like_scene(const Source& source) {
   if (side < kLeastPiece || drawn_share(source.mesh) >= kLeastDrawn) return {};
   const std::vector<Edge> open = open_edges(source.mesh);
   const int straight = straight_sides(source.mesh, open);
-  if (straight < kStraightSides && side < kLeastSide) return {};
+  if (straight == 0 && side < kLeastSide) return {};
   PlaceFromAbove plan = place_of(source.mesh, open, height_map_of(source, box));
-  plan.is_tile = straight >= kStraightSides && plan.rim.at_top >= kMostAtTop;
+  const bool ends_as_cut = plan.rim.at_top >= kMostAtTop;
+  plan.is_tile = straight >= kStraightSides && ends_as_cut;
   plan.side = side;
   if (const std::string why = reason(plan); side >= kLeastTile && !why.empty()) return {why, true};
-  if (plan.is_tile && plan.rim.ground >= kGroundAtRim)
+  if (straight > 0 && ends_as_cut && plan.rim.ground >= kGroundAtRim)
     return {"is cut off straight on " + std::to_string(straight) +
-                " sides of its plan, as tiles of scenes are",
+                (straight > 1 ? " sides" : " side") + " of its plan, as tiles of scenes are",
             false};
   return {};
 }

@@ -76,6 +76,18 @@ TEST_CASE("a house whole on its plot is one building, with a word where the plot
   CHECK(looks_like_scene(plot).why.empty());
 }
 
+TEST_CASE("one side that is cut straight is a word's worth, three ragged ones beside it or not") {
+  const double side = GENERATE(12, 20, 45);
+  CAPTURE(side);
+  Source plot = tile_with(side, {house(side / 4, side / 4, side / 2, side / 2)});
+  for (Vec3& p : plot.mesh.vertices)
+    if (p.y() > 0.7)
+      p += Vec3(std::sin(2 * p.y()), std::sin(2 * p.x()), 0) * (0.1 * side / 20);
+  const PlaceDoubt doubt = looks_like_scene(plot);
+  CHECK_FALSE(doubt.is_certain);
+  CHECK_THAT(doubt.why, Catch::Contains("cut off straight on 1 side of"));
+}
+
 TEST_CASE("a scan that ends at the feet of its walls is no piece of a scene") {
   const double side = GENERATE(20, 45);
   Source s = tile_with(side, {house(1, 1, side - 2, side - 2)});
