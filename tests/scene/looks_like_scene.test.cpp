@@ -81,8 +81,7 @@ TEST_CASE("one side that is cut straight is a word's worth, three ragged ones be
   CAPTURE(side);
   Source plot = tile_with(side, {house(side / 4, side / 4, side / 2, side / 2)});
   for (Vec3& p : plot.mesh.vertices)
-    if (p.y() > 0.7)
-      p += Vec3(std::sin(2 * p.y()), std::sin(2 * p.x()), 0) * (0.1 * side / 20);
+    if (p.y() > 0.7) p += Vec3(std::sin(2 * p.y()), std::sin(2 * p.x()), 0) * (0.1 * side / 20);
   const PlaceDoubt doubt = looks_like_scene(plot);
   CHECK_FALSE(doubt.is_certain);
   CHECK_THAT(doubt.why, Catch::Contains("cut off straight on 1 side of"));
