@@ -15,8 +15,10 @@
 #include "core/spread.h"
 #include "fill.h"
 #include "image/look_sampler.h"
+#include "owners.h"
 #include "parameters.h"
 #include "probe.h"
+#include "sight.h"
 #include "smooth_normals.h"
 
 namespace colod {
@@ -49,30 +51,6 @@ Probe::Holes holes_in(const LookSampler& sampler, Lens& lens) {
   return [&](int face, const Vec3& point) { return sampler.is_hole(face, point, lens); };
 }
 
-/// A triangle of a chart on the chart's plane, counter-clockwise.
-struct Corners {
-  std::array<Vec2, 3> at;
-
-  bool holds(const Vec2& q) const {
-    for (int k = 0; k < 3; ++k)
-      if (cross(at[(k + 1) % 3] - at[k], q - at[k]) < 0) return false;
-    return true;
-  }
-  Vec2 nearest(const Vec2& q) const {
-    if (holds(q)) return q;
-    Vec2 best = at[0];
-    double least = INFINITY;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 along = at[(k + 1) % 3] - at[k];
-      const double square = along.squaredNorm();
-      const double t = square > 0 ? std::clamp((q - at[k]).dot(along) / square, 0.0, 1.0) : 0;
-      const Vec2 p = at[k] + t * along;
-      if ((p - q).squaredNorm() < least) least = (p - q).squaredNorm(), best = p;
-    }
-    return best;
-  }
-};
-
 /// A square of texels of a chart; windows are of the atlas.
 struct Task {
   int chart;
@@ -99,9 +77,11 @@ struct Texel {
 /// Draws one layer's atlas. `normals` may be null: no normal map.
 class Painter {
  public:
-  Painter(const Probe& probe, const LookSampler& sampler, const SmoothNormals* normals,
-          const ImageCache& cache, const PolygonMesh& mesh, const BakeOptions& options)
-      : probe_(probe),
+  Painter(const Mesh& source, const Probe& probe, const LookSampler& sampler,
+          const SmoothNormals* normals, const ImageCache& cache, const PolygonMesh& mesh,
+          const BakeOptions& options)
+      : source_(source),
+        probe_(probe),
         sampler_(sampler),
         normals_(normals),
         cache_(cache),
@@ -126,6 +106,9 @@ class Painter {
     out.image = Raster(atlas_.width, atlas_.height);
     is_known_.assign(out.image.rgb.size() / 3, 0);
     if (normals_) out.normals = flat_normals();
+    sights_.resize(charts_.size());
+    parallel_for(charts_.size(),
+                 [&](std::size_t c) { sights_[c] = Sight(source_, probe_, charts_[c], reach_); });
     const std::vector<Task> tasks = list_tasks();
     std::vector<Tally> tallies(tasks.size());
     parallel_for(tasks.size(), [&](std::size_t i) { draw(tasks[i], out, tallies[i]); });
@@ -187,33 +170,6 @@ class Painter {
     return near;
   }
 
-  /// Per texel of a window the nearest of the triangles; −1: none within the border.
-  static std::vector<int> owners(const Window& w, const std::vector<Corners>& triangles) {
-    std::vector<int> owner(static_cast<std::size_t>(w.width) * w.height, -1);
-    std::vector<double> distance(owner.size(), kBorder);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const auto& at = triangles[t].at;
-      const Vec2 least = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
-      const Vec2 most = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
-      const auto from = [](double v, int begin, int n) {
-        return std::clamp(static_cast<int>(std::floor(v)) - begin, 0, n);
-      };
-      const int x0 = from(least.x() - kBorder, w.x, w.width);
-      const int x1 = from(most.x() + kBorder + 1, w.x, w.width);
-      const int y0 = from(least.y() - kBorder, w.y, w.height);
-      const int y1 = from(most.y() + kBorder + 1, w.y, w.height);
-      for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x) {
-          const std::size_t i = static_cast<std::size_t>(y) * w.width + x;
-          if (distance[i] <= 0) continue;
-          const Vec2 middle(w.x + x + 0.5, w.y + y + 0.5);
-          const double d = (triangles[t].nearest(middle) - middle).norm();
-          if (d < distance[i]) distance[i] = d, owner[i] = static_cast<int>(t);
-        }
-    }
-    return owner;
-  }
-
   /// How a normal stands on a chart; what turns away from it, as on a reveal, lies in its plane.
   static Vec3 on_chart(const Chart& chart, const Vec3& normal) {
     const Vec3 own(normal.dot(chart.right), -normal.dot(chart.down),
@@ -221,28 +177,50 @@ class Painter {
     return own.norm() > 0 ? own.normalized() : Vec3(Vec3::UnitZ());
   }
 
+  /// A window while it is drawn.
+  struct View {
+    const Chart& chart;
+    const PackedRect& rect;
+    const Sight& sight;
+    std::vector<Corners> triangles;  ///< of the chart, near the window
+    SampleGrid grid;                 ///< all samples of the window
+    std::vector<Sighting> sightings;
+    Lens& lens;
+    Probe::Holes holes;
+  };
+
+  View view_of(const Task& task, Lens& lens) const {
+    const auto c = static_cast<std::size_t>(task.chart);
+    const Window& w = task.window;
+    const PackedRect& r = atlas_.rects[c];
+    const double step = atlas_.texel / samples_;
+    const Vec2 corner(w.x - r.x - kGutter, w.y - r.y - kGutter);
+    const SampleGrid grid{atlas_.texel * corner + Vec2::Constant(0.5 * step), step,
+                          w.width * samples_, w.height * samples_};
+    Probe::Holes holes = holes_in(sampler_, lens);
+    std::vector<Sighting> sightings = sights_[c].look(grid, holes);
+    return {charts_[c],           r,    sights_[c],      triangles_near(task), grid,
+            std::move(sightings), lens, std::move(holes)};
+  }
+
   void draw(const Task& task, BakedTexture& out, Tally& tally) {
     const Window& w = task.window;
-    const std::vector<Corners> triangles = triangles_near(task);
-    const std::vector<int> owner = owners(w, triangles);
     Lens lens(cache_);
+    const View view = view_of(task, lens);
+    const std::vector<Owner> owners_of = owners(w, view.triangles);
     for (int y = 0; y < w.height; ++y)
       for (int x = 0; x < w.width; ++x) {
-        const int own = owner[static_cast<std::size_t>(y) * w.width + x];
-        if (own < 0) continue;
-        const Vec2 corner(w.x + x, w.y + y);
-        const bool is_inside =
-            triangles[static_cast<std::size_t>(own)].holds(corner + Vec2::Constant(0.5));
+        const Owner& own = owners_of[static_cast<std::size_t>(y) * w.width + x];
+        if (own.triangle < 0) continue;
         Texel texel;
-        const Finding how = look(task.chart, corner, triangles, own, lens, texel);
+        const Finding how = look(view, w, x, y, own, texel);
         if (how != Finding::kNone) {
           put(out.image.at(w.x + x, w.y + y), texel.light);
           is_known_[static_cast<std::size_t>(w.y + y) * out.image.width + w.x + x] = 1;
           if (normals_)
-            put_normal(out.normals.at(w.x + x, w.y + y),
-                       on_chart(charts_[static_cast<std::size_t>(task.chart)], texel.normal));
+            put_normal(out.normals.at(w.x + x, w.y + y), on_chart(view.chart, texel.normal));
         }
-        if (!is_inside) continue;
+        if (own.distance > 0) continue;
         (how == Finding::kSeen      ? tally.seen
          : how == Finding::kNearest ? tally.nearest
                                     : tally.missing) += 1;
@@ -251,29 +229,49 @@ class Painter {
   }
 
   /// The mean of a texel's samples; each lies on the chart.
-  Finding look(int number, const Vec2& corner, const std::vector<Corners>& triangles, int own,
-               Lens& lens, Texel& mean) const {
-    const auto chart = static_cast<std::size_t>(number);
-    const PackedRect& rect = atlas_.rects[chart];
-    const Vec2 begin(rect.x + kGutter, rect.y + kGutter);
+  Finding look(const View& view, const Window& w, int x, int y, const Owner& own,
+               Texel& mean) const {
+    const Corners& nearest = view.triangles[static_cast<std::size_t>(own.triangle)];
     int found = 0, seen = 0;
     for (int j = 0; j < samples_; ++j)
       for (int i = 0; i < samples_; ++i) {
-        Vec2 at = corner + Vec2(i + 0.5, j + 0.5) / samples_;
-        if (!triangles[static_cast<std::size_t>(own)].holds(at) &&
-            std::none_of(triangles.begin(), triangles.end(),
-                         [&](const Corners& t) { return t.holds(at); }))
-          at = triangles[static_cast<std::size_t>(own)].nearest(at);
-        const Found place = probe_.find(charts_[chart].lift((at - begin) * atlas_.texel),
-                                        charts_[chart].normal, reach_, holes_in(sampler_, lens));
+        const Vec2 at = Vec2(w.x + x, w.y + y) + Vec2(i + 0.5, j + 0.5) / samples_;
+        const Found place = is_on_chart(view, at, own)
+                                ? sighted(view, x * samples_ + i, y * samples_ + j)
+                                : sought(view, nearest.nearest(at));
         if (place.how == Finding::kNone) continue;
-        mean.light += sampler_.sample(place.face, place.point, atlas_.texel / samples_, lens);
+        mean.light += sampler_.sample(place.face, place.point, view.grid.step, view.lens);
         if (normals_) mean.normal += normals_->at(place.face, place.point);
         ++found, seen += place.how == Finding::kSeen;
       }
     if (found == 0) return Finding::kNone;
     mean.light /= static_cast<float>(found);
     return 2 * seen >= found ? Finding::kSeen : Finding::kNearest;
+  }
+
+  /// Whether a sample of a texel lies on one of the triangles; a single one lies in its middle.
+  bool is_on_chart(const View& view, const Vec2& at, const Owner& own) const {
+    if (samples_ == 1) return own.distance <= 0;
+    return view.triangles[static_cast<std::size_t>(own.triangle)].holds(at) ||
+           std::any_of(view.triangles.begin(), view.triangles.end(),
+                       [&](const Corners& t) { return t.holds(at); });
+  }
+
+  /// What a sample of the window's grid shows.
+  Found sighted(const View& view, int x, int y) const {
+    const Vec2 q = view.grid.begin + view.grid.step * Vec2(x, y);
+    const Vec3 place = view.chart.lift(q);
+    const Sighting& s = view.sightings[view.grid.index(x, y)];
+    if (s.face >= 0) return {Finding::kSeen, s.face, place + s.offset * view.chart.normal};
+    if (!view.sight.may_be_near(q)) return {};
+    return probe_.beside(place, view.chart.normal, reach_, view.holes);
+  }
+
+  /// What a place between the samples shows; in texels of the atlas.
+  Found sought(const View& view, const Vec2& at) const {
+    const Vec2 begin(view.rect.x + kGutter, view.rect.y + kGutter);
+    return probe_.find(view.chart.lift((at - begin) * atlas_.texel), view.chart.normal, reach_,
+                       view.holes);
   }
 
   /// What little is known of a chart is no picture of it.
@@ -351,6 +349,7 @@ class Painter {
     return uvs;
   }
 
+  const Mesh& source_;
   const Probe& probe_;
   const LookSampler& sampler_;
   const SmoothNormals* normals_;
@@ -359,6 +358,7 @@ class Painter {
   double reach_;
   int samples_ = 1;  // along each side of a texel
   std::vector<Chart> charts_;
+  std::vector<Sight> sights_;  // per chart
   Atlas atlas_;
   std::vector<std::uint8_t> is_known_;  // per texel: a sample gave it a colour
 };
@@ -387,8 +387,8 @@ double Baker::source_texel() const { return impl_->sampler.texel(); }
 BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) const {
   std::optional<SmoothNormals> normals;
   if (options.has_normals) normals.emplace(impl_->mesh);
-  return Painter(impl_->probe, impl_->sampler, normals ? &*normals : nullptr, impl_->cache, mesh,
-                 options)
+  return Painter(impl_->mesh, impl_->probe, impl_->sampler, normals ? &*normals : nullptr,
+                 impl_->cache, mesh, options)
       .paint();
 }
 

@@ -44,6 +44,10 @@ Found Probe::find(const Vec3& p, const Vec3& normal, double reach, const Holes& 
   if (in && std::abs(in.distance - kLift) <= known)
     return {Finding::kSeen, in.triangle, p - (in.distance - kLift) * normal};
   if (out) return {Finding::kSeen, out.triangle, p + (out.distance - kLift) * normal};
+  return beside(p, normal, reach, is_hole);
+}
+
+Found Probe::beside(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole) const {
   const double about = std::min(reach, kNearest);
   const NearestPoint near = rays_.nearest(p, about);
   if (near.triangle >= 0 && near.distance <= about && agrees(near.triangle, normal) &&

@@ -22,12 +22,15 @@ class Probe {
   /// Passes on where `is_hole` says so of a face and a place on it; empty: nowhere.
   using Holes = std::function<bool(int face, const Vec3& point)>;
   Found find(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole = {}) const;
+  /// What is left where nothing lies along the normal: the nearest place about.
+  Found beside(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole) const;
+  /// Whether a face looks as a facet with this normal does.
+  bool agrees(int face, const Vec3& normal) const;
 
  private:
   /// The first surface along a ray whose normal agrees with `normal`; at most `reach` away.
   RayHit first_agreeing(const Vec3& from, const Vec3& direction, const Vec3& normal, double reach,
                         const Holes& is_hole) const;
-  bool agrees(int face, const Vec3& normal) const;
 
   RayScene rays_;
   std::vector<Vec3> normals_;  // unit, per face; zero without area

@@ -1,0 +1,58 @@
+// Based on: own work.
+#include "owners.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/flat.h"
+
+namespace colod::bake {
+
+using namespace parameters::bake;
+
+bool Corners::holds(const Vec2& q) const {
+  for (int k = 0; k < 3; ++k)
+    if (cross(at[(k + 1) % 3] - at[k], q - at[k]) < 0) return false;
+  return true;
+}
+
+Vec2 Corners::nearest(const Vec2& q) const {
+  if (holds(q)) return q;
+  Vec2 best = at[0];
+  double least = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2 along = at[(k + 1) % 3] - at[k];
+    const double square = along.squaredNorm();
+    const double t = square > 0 ? std::clamp((q - at[k]).dot(along) / square, 0.0, 1.0) : 0;
+    const Vec2 p = at[k] + t * along;
+    if ((p - q).squaredNorm() < least) least = (p - q).squaredNorm(), best = p;
+  }
+  return best;
+}
+
+std::vector<Owner> owners(const Window& w, const std::vector<Corners>& triangles) {
+  std::vector<Owner> out(static_cast<std::size_t>(w.width) * w.height);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& at = triangles[t].at;
+    const Vec2 least = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
+    const Vec2 most = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
+    const auto from = [](double v, int begin, int n) {
+      return std::clamp(static_cast<int>(std::floor(v)) - begin, 0, n);
+    };
+    const int x0 = from(least.x() - kBorder, w.x, w.width);
+    const int x1 = from(most.x() + kBorder + 1, w.x, w.width);
+    const int y0 = from(least.y() - kBorder, w.y, w.height);
+    const int y1 = from(most.y() + kBorder + 1, w.y, w.height);
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        Owner& own = out[static_cast<std::size_t>(y) * w.width + x];
+        if (own.distance <= 0) continue;
+        const Vec2 middle(w.x + x + 0.5, w.y + y + 0.5);
+        const double d = (triangles[t].nearest(middle) - middle).norm();
+        if (d < own.distance) own = {static_cast<int>(t), d};
+      }
+  }
+  return out;
+}
+
+}  // namespace colod::bake
