@@ -194,7 +194,7 @@ class TilesetWriter {
   }
 
   void list_contents(const PlannedTile& tile, TilesetFile& file) const {
-    file.contents.push_back({&tile, {file.below() + tile.name + ".glb", {}}, {}});
+    file.contents.push_back({&tile, {file.below() + tile.name + ".glb", {}}, {}, 0, 0, {}});
     for (const PlannedTile& child : tile.children)
       if (!child.is_tileset) list_contents(child, file);
   }
