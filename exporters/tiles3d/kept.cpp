@@ -22,12 +22,7 @@ class Facts {
     return *this;
   }
   Facts& operator<<(const Vec3& v) { return *this << v.x() << v.y() << v.z(); }
-  std::string hash() const {
-    const std::string all = text_.str();
-    Hash hash;
-    hash.add(all.data(), all.size());
-    return hash.hex();
-  }
+  std::string hash() const { return hash_of(text_.str()); }
 
  private:
   std::ostringstream text_;
@@ -39,15 +34,14 @@ void add_frame(const TileFrame& frame, Facts& facts) {
     for (const double x : frame.to_ecef()) facts << x;
 }
 
-void add_part(const TilePart& part, const std::vector<ExportBuilding>& buildings,
-              const KeptTiles& kept, Facts& facts) {
+void add_part(const TilePart& part, const KeptTiles& kept, Facts& facts) {
   facts << part.buildings.size() << part.origin << part.gsd << part.deviation;
-  for (const int b : part.buildings) {
-    const ExportBuilding& own = buildings[static_cast<std::size_t>(b)];
-    facts << own.name << own.given_name << own.source << kept.keys[static_cast<std::size_t>(b)];
-  }
+  Hash buildings;
+  for (const int b : part.buildings)
+    buildings.add(&kept.keys[static_cast<std::size_t>(b)], sizeof(BuildingKey));
+  facts << buildings.hex();
   if (part.level) {  // of one building
-    facts << part.level - buildings[static_cast<std::size_t>(part.buildings[0])].levels.data();
+    facts << part.level->layers.front() << part.level->layers.back();
     return;
   }
   facts << "stand-in" << part.mesh->vertices.size();
@@ -56,14 +50,13 @@ void add_part(const TilePart& part, const std::vector<ExportBuilding>& buildings
 
 }  // namespace
 
-std::string tile_key(const PlannedTile& tile, const TileFrame& frame,
-                     const std::vector<ExportBuilding>& buildings, const TilesOptions& options) {
+std::string tile_key(const PlannedTile& tile, const TileFrame& frame, const TilesOptions& options) {
   Facts facts;
   facts << tile.name << tile.is_finest << tile.parts.size();
   facts << static_cast<int>(options.compression) << options.quantization << options.target_sse
         << options.largest_texture;
   add_frame(frame, facts);
-  for (const TilePart& part : tile.parts) add_part(part, buildings, *options.kept, facts);
+  for (const TilePart& part : tile.parts) add_part(part, *options.kept, facts);
   return facts.hash();
 }
 

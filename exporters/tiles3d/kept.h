@@ -8,7 +8,6 @@
 namespace colod {
 
 /// What a tile's file is made from, as a hash. \pre options.kept is not null
-std::string tile_key(const PlannedTile& tile, const TileFrame& frame,
-                     const std::vector<ExportBuilding>& buildings, const TilesOptions& options);
+std::string tile_key(const PlannedTile& tile, const TileFrame& frame, const TilesOptions& options);
 
 }  // namespace colod

@@ -151,7 +151,7 @@ std::vector<Vec3> corners(const StandInBox& box) {
 }
 
 /// The smaller of the boxes about both in either's direction, as high as their mean by footprint.
-StandInBox joined(const StandInBox& a, const StandInBox& b) {
+StandInBox box_about_both(const StandInBox& a, const StandInBox& b) {
   std::vector<Vec3> points = corners(a);
   const std::vector<Vec3> more = corners(b);
   points.insert(points.end(), more.begin(), more.end());
@@ -162,6 +162,11 @@ StandInBox joined(const StandInBox& a, const StandInBox& b) {
   const double top =
       (wa * (a.origin.z() + a.half.z()) + wb * (b.origin.z() + b.half.z())) / (wa + wb);
   box.half.z() = std::max(kLeastHalf, top - box.origin.z());
+  return box;
+}
+
+StandInBox joined(const StandInBox& a, const StandInBox& b) {
+  StandInBox box = box_about_both(a, b);
   std::merge(a.buildings.begin(), a.buildings.end(), b.buildings.begin(), b.buildings.end(),
              std::back_inserter(box.buildings));
   return box;
@@ -170,7 +175,7 @@ StandInBox joined(const StandInBox& a, const StandInBox& b) {
 /// What merging costs, quickly: how far corners and middles of the joined box's sides lie from the
 /// two, or the change of height.
 double cost(const StandInBox& a, const StandInBox& b) {
-  const StandInBox box = joined(a, b);
+  const StandInBox box = box_about_both(a, b);
   double worst = std::max(std::abs(a.origin.z() + a.half.z() - box.origin.z() - box.half.z()),
                           std::abs(b.origin.z() + b.half.z() - box.origin.z() - box.half.z()));
   for (int i = -1; i <= 1; ++i)
@@ -225,13 +230,10 @@ StandInBox stand_in_for(const ExportBuilding& building, int index, const SwitchF
   return best;
 }
 
-void agree_on_switch(std::vector<StandInBox>& boxes, const SwitchFacts& facts) {
-  if (facts.scope != "scene" || boxes.empty()) return;
-  std::vector<double> own;
-  for (const StandInBox& box : boxes) own.push_back(box.gsd);
+std::optional<double> shared_gsd(const std::vector<double>& own, const SwitchFacts& facts) {
+  if (facts.scope != "scene" || own.empty()) return {};
   const double coarsest = facts.layer_gsd.empty() ? 0 : facts.layer_gsd.front();
-  const double shared = std::max(kLeastStep * coarsest, value_at_share(own, facts.share));
-  for (StandInBox& box : boxes) box.gsd = shared;
+  return std::max(kLeastStep * coarsest, value_at_share(own, facts.share));
 }
 
 std::vector<StandInBox> merge_stand_ins(std::vector<StandInBox> boxes, std::size_t most,

@@ -2,6 +2,8 @@
 // building and farther up one for several, each with its measured deviation.
 #pragma once
 
+#include <optional>
+
 #include "exporters/exporter.h"
 
 namespace colod {
@@ -21,8 +23,9 @@ struct StandInBox {
 /// deviates least. Its gsd is measured as a level's is, and greater than the coarsest level's.
 StandInBox stand_in_for(const ExportBuilding& building, int index, const SwitchFacts& facts = {});
 
-/// Scope scene: gives all boxes one gsd, as a layer has. Scope building: leaves them as they are.
-void agree_on_switch(std::vector<StandInBox>& boxes, const SwitchFacts& facts);
+/// Scope scene: the gsd of all buildings' boxes, as a layer has one, by what each has of its own.
+/// Scope building: nothing, each keeps its own.
+std::optional<double> shared_gsd(const std::vector<double>& own, const SwitchFacts& facts);
 
 /// Merges the cheapest pairs until at most `most` (≥ 1) are left. A merged box's error is its
 /// measured deviation from the boxes that it replaces, added to the largest of theirs; its gsd is

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/hash.h"
 
 namespace colod {
 
@@ -22,86 +22,106 @@ constexpr double kMostShare = 0.05;        // of them, where that gives each bui
 constexpr std::size_t kMostStandIns = 64;  // in one tile
 constexpr double kNearer = 1.005;  // scope scene: a level may stand so much nearer than others' …
 constexpr double kWorthATile = 1.4;  // … scope building: so much nearer that it is worth a tile
-
-void show(std::deque<PolygonMesh>& meshes, PlannedTile& tile,
-          const std::vector<StandInBox>& boxes) {
-  tile.parts.clear();
-  for (const StandInBox& box : boxes) {
-    meshes.push_back(mesh_of(box));
-    tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.gsd, box.error});
-  }
-}
+constexpr const char* kRoot = "root";
 
 class Planner {
  public:
-  Planner(const std::vector<ExportBuilding>& buildings, const std::vector<TileOutline>& outlines,
-          const SwitchFacts& facts)
-      : buildings_(buildings),
-        outlines_(outlines),
+  Planner(const std::vector<TileOutline>& outlines, const PlanAccess& access,
+          const SwitchFacts& facts, std::size_t most_entries)
+      : outlines_(outlines),
+        access_(access),
+        most_entries_(most_entries),
         pixel_error_(facts.pixel_error),
         worth_a_tile_(facts.scope == "scene" ? kNearer : kWorthATile) {
-    for (const TileOutline& outline : outlines) {
-      singles_.push_back(outline.stand_in);
-      singles_.back().buildings = {static_cast<int>(singles_.size()) - 1};
-    }
-    agree_on_switch(singles_, facts);
+    std::vector<double> own;
+    for (const TileOutline& outline : outlines) own.push_back(outline.stand_in.gsd);
+    shared_gsd_ = shared_gsd(own, facts);
   }
 
-  TilePlan plan() {
-    std::vector<int> all(buildings_.size());
+  PlannedTile plan() {
+    std::vector<int> all(outlines_.size());
     std::iota(all.begin(), all.end(), 0);
-    plan_.root = far_tile(all, "root", false, plan_.farthest);
-    return std::move(plan_);
+    std::vector<StandInBox> farthest;
+    return far_tile(std::move(all), "root", false, farthest);
   }
 
  private:
+  /// A building's own box.
+  StandInBox single(int b) const {
+    StandInBox box = outlines_[b].stand_in;
+    box.buildings = {b};
+    if (shared_gsd_) box.gsd = *shared_gsd_;
+    return box;
+  }
+
   /// Shows stand-ins; what is in `below` is of other tiles, and the tile's own join it.
-  PlannedTile far_tile(const std::vector<int>& group, const std::string& name, bool is_in_cell,
+  PlannedTile far_tile(std::vector<int> group, const std::string& name, bool is_in_cell,
                        std::vector<StandInBox>& below) {
-    PlannedTile tile{.name = name, .parts = {}, .children = {}};
-    tile.is_cell = !is_in_cell && is_cell(group);
-    is_in_cell |= tile.is_cell;
+    PlannedTile tile{.name = name, .boxes = {}, .parts = {}, .children = {}};
+    const bool is_top = name == kRoot, starts_cell = !is_in_cell && is_cell(group);
+    if (starts_cell) access_.open(group);
+    is_in_cell |= starts_cell;
+    const std::size_t most = budget(group);
     std::vector<StandInBox> shown;
-    const bool is_merged = budget(group) < group.size();
     const auto add_near = [&](const std::vector<int>& part, const std::string& child) {
-      tile.children.push_back(is_merged ? box_tile(part, child) : near_tile(part, child));
-      for (const int b : part) shown.push_back(singles_[b]);
+      tile.children.push_back(most < group.size() ? box_tile(part, child) : near_tile(part, child));
+      for (const int b : part) shown.push_back(single(b));
     };
     if (group.size() <= kMostChildren) {
       add_near(group, name + ".0");
     } else {
       int number = 0;
-      for (const std::vector<int>& part : quarter(group)) {
+      std::vector<std::vector<int>> parts = quarter(group);
+      if (!is_in_cell) group = {};  // its parts have them all
+      for (std::vector<int>& part : parts) {
         const std::string child = name + "." + std::to_string(number++);
         if (part.size() > kMostChildren || !is_in_cell)
-          tile.children.push_back(far_tile(part, child, is_in_cell, shown));
+          tile.children.push_back(far_tile(std::move(part), child, is_in_cell, shown));
         else
           add_near(part, child);
       }
     }
-    shown = merge_stand_ins(std::move(shown), budget(group), pixel_error_);
-    show(plan_.stand_ins, tile, shown);
-    below.insert(below.end(), shown.begin(), shown.end());
+    tile.boxes = merge_stand_ins(std::move(shown), most, pixel_error_);
+    below.insert(below.end(), tile.boxes.begin(), tile.boxes.end());
+    if (!is_in_cell) part_file(tile);
+    if (starts_cell && !is_top) finish(tile);
     return tile;
+  }
+
+  /// A tile of the top: where its file would become too large, its children get files of their own.
+  void part_file(PlannedTile& tile) {
+    const auto count = [&] {
+      tile.entries = 1;
+      for (const PlannedTile& child : tile.children) tile.entries += child.entries;
+      return tile.entries;
+    };
+    if (count() <= most_entries_) return;
+    for (PlannedTile& child : tile.children)
+      if (!child.is_tileset) finish(child);
+    count();
+  }
+
+  void finish(PlannedTile& tile) {
+    tile.is_tileset = true;
+    tile.entries = 1;
+    access_.finish(tile);
   }
 
   /// Shows a box for each building, below a tile that merged them.
   PlannedTile box_tile(const std::vector<int>& group, const std::string& name) {
-    PlannedTile tile{.name = name, .parts = {}, .children = {}};
-    std::vector<StandInBox> boxes;
-    for (const int b : group) boxes.push_back(singles_[b]);
-    show(plan_.stand_ins, tile, boxes);
+    PlannedTile tile{.name = name, .boxes = {}, .parts = {}, .children = {}};
+    for (const int b : group) tile.boxes.push_back(single(b));
     tile.children.push_back(near_tile(group, name + ".0"));
     return tile;
   }
 
   /// Shows the buildings' coarsest levels.
   PlannedTile near_tile(const std::vector<int>& group, const std::string& name) const {
-    PlannedTile tile{.name = name, .parts = {}, .children = {}};
+    PlannedTile tile{.name = name, .boxes = {}, .parts = {}, .children = {}};
     const bool has_finer = std::any_of(group.begin(), group.end(),
-                                       [&](int b) { return buildings_[b].levels.size() > 1; });
+                                       [&](int b) { return access_.at(b).levels.size() > 1; });
     double gsd = 0;
-    for (const int b : group) gsd = std::max(gsd, buildings_[b].levels.front().gsd);
+    for (const int b : group) gsd = std::max(gsd, access_.at(b).levels.front().gsd);
     for (const int b : group) {
       tile.parts.push_back(part_of(b, 0));
       if (has_finer) tile.children.push_back(chain(b, first_below(b, gsd)));
@@ -114,15 +134,16 @@ class Planner {
   /// coarsest again where it may stand nearer (in scope scene at all, so that no building is finer
   /// than one before it), or has no finer one and is replaced by itself.
   std::size_t first_below(int b, double gsd) const {
-    const std::vector<ExportLevel>& levels = buildings_[b].levels;
+    const std::vector<ExportLevel>& levels = access_.at(b).levels;
     return levels.size() == 1 || worth_a_tile_ * levels.front().gsd < gsd ? 0 : 1;
   }
 
   /// The building's levels from this one on, each the only child of the coarser one.
   PlannedTile chain(int b, std::size_t level) const {
-    const ExportBuilding& building = buildings_[b];
+    const ExportBuilding& building = access_.at(b);
     PlannedTile tile{
         .name = building.name + ".layer" + std::to_string(building.levels[level].layers.back()),
+        .boxes = {},
         .parts = {part_of(b, level)},
         .children = {}};
     tile.is_finest = level + 1 == building.levels.size();
@@ -131,8 +152,9 @@ class Planner {
   }
 
   TilePart part_of(int b, std::size_t number) const {
-    const ExportLevel& level = buildings_[b].levels[number];
-    return {{b}, &level, &level.mesh, buildings_[b].origin, level.gsd, level.deviation};
+    const ExportBuilding& building = access_.at(b);
+    const ExportLevel& level = building.levels[number];
+    return {{b}, &level, &level.mesh, building.origin, level.gsd, level.deviation};
   }
 
   std::size_t budget(const std::vector<int>& group) const {
@@ -177,12 +199,12 @@ class Planner {
     return out;
   }
 
-  const std::vector<ExportBuilding>& buildings_;
   const std::vector<TileOutline>& outlines_;
+  const PlanAccess& access_;
+  std::size_t most_entries_;
   double pixel_error_;
   double worth_a_tile_;  // a factor between the gsds of a group and of one of its buildings
-  std::vector<StandInBox> singles_;  // one a building
-  TilePlan plan_;
+  std::optional<double> shared_gsd_;  // of all single boxes
 };
 
 }  // namespace
@@ -199,23 +221,28 @@ TileOutline outline_of(const ExportBuilding& building, const SwitchFacts& facts)
   outline.triangles = building.levels.back().mesh.triangles.size();
   outline.stand_in = stand_in_for(building, 0, facts);
   outline.has_look = coarsest.look.has_texture() || !coarsest.look.facet_colors.empty();
+  outline.source = source_id(building.source);
   return outline;
 }
 
-TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings,
-                    const std::vector<TileOutline>& outlines, const SwitchFacts& facts) {
-  return Planner(buildings, outlines, facts).plan();
+std::uint64_t source_id(const std::string& source) {
+  Hash hash;
+  hash.add(source.data(), source.size());
+  return hash.value()[0];
 }
 
-TilePlan plan_tiles(const std::vector<ExportBuilding>& buildings, const SwitchFacts& facts) {
-  std::vector<TileOutline> outlines(buildings.size());
-  parallel_for(buildings.size(),
-               [&](std::size_t i) { outlines[i] = outline_of(buildings[i], facts); });
-  return plan_tiles(buildings, outlines, facts);
+PlannedTile plan_tiles(const std::vector<TileOutline>& outlines, const PlanAccess& access,
+                       const SwitchFacts& facts, std::size_t most_entries) {
+  return Planner(outlines, access, facts, most_entries).plan();
 }
 
-void show_farthest(TilePlan& plan, const std::vector<StandInBox>& boxes) {
-  show(plan.stand_ins, plan.root, boxes);
+void show_boxes(PlannedTile& tile, std::deque<PolygonMesh>& meshes) {
+  if (!tile.boxes.empty()) tile.parts.clear();
+  for (const StandInBox& box : tile.boxes) {
+    meshes.push_back(mesh_of(box));
+    tile.parts.push_back({box.buildings, nullptr, &meshes.back(), box.origin, box.gsd, box.error});
+  }
+  for (PlannedTile& child : tile.children) show_boxes(child, meshes);
 }
 
 }  // namespace colod

@@ -12,6 +12,7 @@
 
 #include "cli.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "job/job.h"
@@ -98,11 +99,18 @@ std::vector<CellBuilding> buildings_of(const Store& store, const std::vector<std
   return buildings;
 }
 
+/// Reads the file where its length is right.
 HasFile looks_into(const std::string& out) {
-  return [out](const std::string& path, std::size_t bytes) {
+  return [out](const WrittenFile& file) {
+    const fs::path path = fs::path(out) / file.path;
     std::error_code error;
-    const std::uintmax_t found = fs::file_size(fs::path(out) / path, error);
-    return !error && found == bytes;
+    if (fs::file_size(path, error) != file.bytes || error) return false;
+    std::ifstream in(path, std::ios::binary);
+    std::vector<char> piece(1 << 20);
+    Hash hash;
+    while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+      hash.add(piece.data(), static_cast<std::size_t>(in.gcount()));
+    return hash.hex() == file.hash;
   };
 }
 
@@ -123,6 +131,12 @@ Take writes_changed(const std::string& out) {
   };
 }
 
+Shelf open_export(const std::string& path, const std::string& remedy) try {
+  return {path, false};
+} catch (const Error& e) {
+  throw Error(e.stage, path, "is damaged, or cannot be read: run " + remedy);
+}
+
 /// What the cells' exports hand over. Throws Error{kInput} where there was none.
 std::vector<MergedCell> exported_cells(const CellArguments& a, const PlannedScene& all) {
   std::vector<MergedCell> cells;
@@ -131,7 +145,7 @@ std::vector<MergedCell> exported_cells(const CellArguments& a, const PlannedScen
     const std::string remedy = line_for("export", a.plan.path, cell, all.plan) + " -o " +
                                a.output.out + " with the options that colod merge gets";
     if (!fs::exists(path)) throw Error(Stage::kInput, path, "is not there: run " + remedy);
-    cells.push_back({path, Shelf(path, false),
+    cells.push_back({path, open_export(path, remedy),
                      buildings_of(Store(cell_scene(a.plan.path, cell), false), all.names[cell]),
                      remedy});
   }
@@ -147,7 +161,7 @@ int merge(const CellArguments& a) {
   PlannedScene all = read_planned(a, log);
   std::vector<MergedCell> cells = exported_cells(a, all);
   make_folder(a.output.out);
-  Shelf kept(kept_tiles_file(a.plan.path), true);
+  Shelf kept = Shelf::open_or_renew(kept_tiles_file(a.plan.path), warns(log));
   const std::vector<std::string>& formats = a.output.options.formats;
   const bool has_folder = std::find(formats.begin(), formats.end(), "3dtiles") != formats.end();
   const std::string tiles = has_folder ? a.output.out : archived_tiles(a.plan.path);
@@ -180,6 +194,10 @@ int merge(const CellArguments& a) {
 
 }  // namespace
 
+std::function<void(const std::string&)> warns(const Log& log) {
+  return [&log](const std::string& line) { log.message({Level::kWarning, line}); };
+}
+
 std::optional<Switching> switching_before(const std::string& plan_path, const Scene& scene,
                                           const SwitchOptions& options, const Log& log) {
   if (scene.placed_later.empty()) return std::nullopt;
@@ -211,16 +229,18 @@ std::vector<std::string> names_of(const Inventory& inventory) {
 void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cell) {
   const std::string path = cell_scene(plan_path, cell);
   const std::vector<std::string> names = names_of(inventory_of(plan, cell));
+  const std::string remedy = ": run " + line_for("segment", plan_path, cell, plan);
   std::size_t there = 0;
-  if (fs::exists(path)) {
-    const Store store(path, false);
-    for (const std::string& name : names) there += !store.segments_key(name).empty();
-    if (there == names.size() && store.names().size() == names.size()) return;
-  }
+  if (fs::exists(path)) try {
+      const Store store(path, false);
+      for (const std::string& name : names) there += !store.segments_key(name).empty();
+      if (there == names.size() && store.names().size() == names.size()) return;
+    } catch (const Error& e) {
+      throw Error(e.stage, e.what(), "it is damaged, or of another colod" + remedy);
+    }
   throw Error(Stage::kInput, path,
               "has " + std::to_string(there) + " of the " + std::to_string(names.size()) +
-                  " buildings that it is to have: run " +
-                  line_for("segment", plan_path, cell, plan));
+                  " buildings that it is to have" + remedy);
 }
 
 void for_own_cells(const PlanArguments& a, const Plan& plan,
@@ -243,7 +263,7 @@ int export_shard(const CellArguments& a) {
   CellOutcome outcome;
   for_own_cells(a.plan, all.plan, [&](std::size_t cell, const std::string& path) {
     const Store store(path, false);
-    Shelf shelf(cell_export(a.plan.path, cell), true);
+    Shelf shelf = Shelf::open_or_renew(cell_export(a.plan.path, cell), warns(log));
     std::mutex mutex;
     int done = 0;
     const int count = static_cast<int>(all.names[cell].size());
@@ -259,7 +279,8 @@ int export_shard(const CellArguments& a) {
                               [&](const std::string& name, bool is_new) {
                                 log.progress(name, is_new ? "files" : "already there", ++done,
                                              count);
-                              }};
+                              },
+                          .tell = [&](const Message& m) { log.message(m); }};
     CellOutcome own = export_cell(common, tasks, shelf);
     outcome.tally += own.tally;
     for (const Message& m : own.messages) log.message(m);

@@ -30,6 +30,9 @@ void check_whole(const Plan& plan, const std::string& plan_path, std::size_t cel
 void for_own_cells(const PlanArguments& a, const Plan& plan,
                    const std::function<void(std::size_t, const std::string&)>& body);
 
+/// `log` must outlive it.
+std::function<void(const std::string& line)> warns(const Log& log);
+
 /// Exports the buildings of this run's shard; merge makes the files of the scene. Returns the exit
 /// code.
 int export_shard(const CellArguments& a);

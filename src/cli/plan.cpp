@@ -41,14 +41,26 @@ void write_changed(const fs::path& path, const std::string& text) {
   write_file(folder.empty() ? "." : folder.string(), {path.filename().string(), text});
 }
 
+/// The plan that is there. One that cannot be read, among its cells' stamps, is made anew.
+std::optional<Plan> plan_before(const std::string& path, const Log& log) {
+  if (!fs::exists(path)) return {};
+  try {
+    return read_plan(path);
+  } catch (const Error& e) {
+    if (!fs::exists(cell_stamp_file(path, 0))) throw;
+    log.message({Level::kWarning, std::string(e.what()) + ": made anew, files may change cells"});
+    return {};
+  }
+}
+
 int make(const MakePlanArguments& a) {
   validate(a.options);
   limit_threads(a.run.threads);
   const fs::path folder = fs::path(a.out).parent_path();
   make_folder(folder.empty() ? "." : folder.string());
   const CellLock lock(a.out);
-  std::optional<Plan> previous;
-  if (fs::exists(a.out)) previous = read_plan(a.out);
+  const Log log = a.run.log();
+  const std::optional<Plan> previous = plan_before(a.out, log);
   const Inventory inventory = take_inventory(a.inputs, a.read);
   const Plan plan =
       make_plan(inventory, a.read, a.options, a.cells, previous ? &*previous : nullptr);
@@ -59,7 +71,6 @@ int make(const MakePlanArguments& a) {
   problems.failures = plan.failures;
   problems.warnings = plan.warnings;
   problems.buildings.resize(plan.building_count());
-  const Log log = a.run.log();
   log_problems(problems, log);
   log.message({Level::kInfo, std::to_string(plan.building_count()) + " buildings in " +
                                  std::to_string(plan.cells.size()) + " cells, written to " +

@@ -79,7 +79,7 @@ void segment_cells(const StageArguments& a, const Log& log, Scene& problems) {
   check_cost(plan.options, plan.building_count());
   for_own_cells(a.plan, plan, [&](std::size_t cell, const std::string& path) {
     const Inventory inventory = inventory_of(plan, cell);
-    Store store(path, true);
+    Store store = Store::open_or_renew(path, warns(log));
     store.keep_only(names_of(inventory));
     const Reader read = [&](std::size_t f) { return read_file(inventory.files[f], plan.read); };
     segment_into(store, inventory, read, plan.options, log, problems);

@@ -1,6 +1,7 @@
 // A hash by which a later run knows its inputs again.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -25,6 +26,7 @@ class Hash {
     add(&size, sizeof size);
     add(v.data(), v.size() * sizeof(T));
   }
+  std::array<std::uint64_t, 2> value() const { return {a_, b_}; }
   std::string hex() const {
     char text[33];
     std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(a_),
@@ -35,5 +37,11 @@ class Hash {
  private:
   std::uint64_t a_ = 14695981039346656037ULL, b_ = 88172645463325252ULL;
 };
+
+inline std::string hash_of(const std::string& bytes) {
+  Hash hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
+}
 
 }  // namespace colod

@@ -51,7 +51,7 @@ auto read_piece(const std::string& piece, const std::string& where, const Read& 
     return read(Json::from_cbor(piece));
   } catch (const std::exception& e) {
     throw Error(Stage::kInput, where,
-                std::string("is damaged: delete it, and run colod export again: ") + e.what());
+                std::string("is damaged: run colod export again: ") + e.what());
   }
 }
 
@@ -149,7 +149,7 @@ std::string facts_of(const CellRecord& r) {
   for (const Message& m : r.messages)
     messages.push_back({static_cast<int>(m.level), packed(m.text)});
   for (const PartFacts& p : r.parts) parts.push_back({p.layer, p.extent, p.area, p.is_flat});
-  for (const WrittenFile& f : r.files) files.push_back({packed(f.path), f.bytes});
+  for (const WrittenFile& f : r.files) files.push_back({packed(f.path), f.bytes, f.hash});
   return bytes_of({{"key", r.key},
                    {"building", building_json(r.building)},
                    {"path", packed(r.path)},
@@ -264,12 +264,13 @@ CellRecord record_of(const std::string& facts, const std::string& where) {
     r.building = building_from(json.at("building"));
     r.path = text_of(json.at("path"));
     r.outline = outline_from(json.at("outline"));
+    r.outline.source = source_id(r.building.source);
     r.not_in_tiles = text_of(json.at("not_in_tiles"));
     r.tally = tally_from(json.at("tally"));
     for (const Json& m : json.at("messages"))
       r.messages.push_back({static_cast<Level>(m.at(0).get<int>()), text_of(m.at(1))});
     for (const Json& p : json.at("parts")) r.parts.push_back({p.at(0), p.at(1), p.at(2), p.at(3)});
-    for (const Json& f : json.at("files")) r.files.push_back({text_of(f.at(0)), f.at(1)});
+    for (const Json& f : json.at("files")) r.files.push_back({text_of(f.at(0)), f.at(1), f.at(2)});
     r.pictures = json.at("pictures");
     return r;
   });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cells.h"
 #include "exporters/exporter.h"
 #include "exporters/tiles3d/tiles3d.h"
 #include "messages.h"
@@ -13,12 +14,6 @@
 #include "store/shelf.h"
 
 namespace colod {
-
-/// A file that was written, below OUT.
-struct WrittenFile {
-  std::string path;
-  std::size_t bytes = 0;
-};
 
 /// All of a building that the merge holds in memory.
 struct CellRecord {

@@ -23,18 +23,16 @@ class OwnSource : public Depot {
   void drop(Building& b) override { drop_geometry(b); }
 };
 
-/// Whether a building's pieces and files are there, of the same meshes, options and switches.
+/// Whether a building's pieces and files are there, of the same meshes, options and switches;
+/// `damage` gets what should be and is not.
 bool is_exported(const std::string& key, const CellTasks& tasks, const CellBuilding& building,
-                 const std::string& facts) {
+                 const std::string& facts, std::string& damage) {
   if (facts.empty()) return false;
-  try {
-    const CellRecord record = record_of(facts, building.name);
-    return record.key == key &&
-           std::all_of(record.files.begin(), record.files.end(),
-                       [&](const WrittenFile& f) { return tasks.has_file(f.path, f.bytes); });
-  } catch (const Error&) {  // damaged: made anew
-    return false;
-  }
+  const CellRecord record = record_of(facts, building.name);
+  if (record.key != key) return false;
+  for (const WrittenFile& f : record.files)
+    if (!tasks.has_file(f)) damage = f.path + ": is missing or damaged: made anew";
+  return damage.empty();
 }
 
 /// What one building hands over.
@@ -86,7 +84,7 @@ class CellExporter {
     Stopwatch watch(b.timings.export_);
     const Take take = [&](const Encoded& file) {
       tasks_.take(file);
-      r.files.push_back({file.path, file.bytes.size()});
+      r.files.push_back({file.path, file.bytes.size(), hash_of(file.bytes)});
     };
     encode_building(r.building, writer_, source_, b, &pictures, take);
     if (!b.failure.empty()) {
@@ -128,10 +126,7 @@ std::string CellScene::stamp() const {
   text << ' ' << to_string(s.measure) << ' ' << to_string(s.scope) << ' ' << s.visual_error << ' '
        << s.pixel_error << ' ' << s.share << ' ' << s.rounding;
   for (const SceneSwitch& layer : scene.switching.layers) text << ' ' << layer.gsd;
-  const std::string all = text.str();
-  Hash hash;
-  hash.add(all.data(), all.size());
-  return hash.hex();
+  return hash_of(text.str());
 }
 
 std::string key_of(const CellScene& cells, const std::string& stamp, const CellBuilding& building) {
@@ -140,9 +135,7 @@ std::string key_of(const CellScene& cells, const std::string& stamp, const CellB
       found != cells.scene.attributes.end())
     for (const auto& [name, value] : found->second) own += '\n' + name + ' ' + value;
   if (own.empty()) return stamp + building.meshes_key;
-  Hash hash;
-  hash.add(own.data(), own.size());
-  return stamp + building.meshes_key + hash.hex();
+  return stamp + building.meshes_key + hash_of(own);
 }
 
 CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& shelf) {
@@ -153,19 +146,23 @@ CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& s
   std::vector<CellRecord> records(names.size());
   std::mutex mutex;
   parallel_for(names.size(), [&](std::size_t i) {
-    std::string facts;
+    std::string facts, damage;
     {
       const std::lock_guard lock(mutex);
-      facts = shelf.get(names[i], kFacts);
+      const Shelf::State state = shelf.state(names[i]);
+      if (state == Shelf::State::kWhole) facts = shelf.get(names[i], kFacts);
+      if (state == Shelf::State::kDamaged)
+        damage = names[i] + ": what was exported of it is damaged: made anew";
     }
     const bool is_there =
-        is_exported(exporter.key(tasks.buildings[i]), tasks, tasks.buildings[i], facts);
+        is_exported(exporter.key(tasks.buildings[i]), tasks, tasks.buildings[i], facts, damage);
     Exported exported;
     if (is_there)
       exported.record = record_of(facts, names[i]);
     else
       exported = exporter.run(tasks.buildings[i]);
     const std::lock_guard lock(mutex);
+    if (!damage.empty()) tasks.tell({Level::kWarning, damage});
     if (!is_there) shelf.put(names[i], exported.pieces);
     records[i].tally = exported.record.tally;
     records[i].messages = std::move(exported.record.messages);

@@ -37,8 +37,15 @@ struct CellBuilding {
   std::string name, meshes_key;
 };
 
-/// Whether OUT has this file, of so many bytes.
-using HasFile = std::function<bool(const std::string& path, std::size_t bytes)>;
+/// A file below OUT.
+struct WrittenFile {
+  std::string path;
+  std::size_t bytes = 0;
+  std::string hash;  ///< of its bytes
+};
+
+/// Whether OUT has this file with these bytes. Thread-safe.
+using HasFile = std::function<bool(const WrittenFile&)>;
 
 struct CellTasks {
   std::vector<CellBuilding> buildings;
@@ -46,12 +53,13 @@ struct CellTasks {
   Take take;
   HasFile has_file;
   std::function<void(const std::string& building, bool is_done_anew)> progress;  ///< one at a time
+  Tell tell;  ///< one at a time: what was there, but damaged
 };
 
 /// Makes the own files of a cell's buildings, several at once, and puts on the shelf what the merge
 /// needs of each; what is there already, of the same meshes, options and switches, and has its
-/// files, is left as it is. Buildings with other names leave the shelf. Returns what is to be told
-/// of the cell's buildings.
+/// files, byte for byte, is left as it is. Buildings with other names leave the shelf. Returns what
+/// is to be told of the cell's buildings.
 struct CellOutcome {
   Tally tally;
   std::vector<Message> messages;

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/hash.h"
+
 namespace colod {
 namespace {
 
@@ -16,6 +18,10 @@ Json options_json(const SwitchOptions& o) {
           {"rounding", o.rounding}};
 }
 
+std::string text_of(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 std::string switching_text(const Switching& switching) {
@@ -26,12 +32,16 @@ std::string switching_text(const Switching& switching) {
   for (const SceneSwitch& s : switching.layers)
     json["layers"].push_back(
         {s.gsd, s.buildings, s.too_coarse, s.coarse_factor, s.too_fine, s.fine_factor});
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["hash"] = hash_of(text_of(json));
+  return text_of(json);
 }
 
 std::optional<Switching> switching_of(const std::string& text, const SwitchOptions& options) {
   try {
-    const Json json = Json::parse(text);
+    Json json = Json::parse(text);
+    const std::string hash = json.at("hash");
+    json.erase("hash");
+    if (hash != hash_of(text_of(json))) return std::nullopt;
     if (json.at("options") != options_json(options)) return std::nullopt;
     Switching switching;
     switching.options = options;

@@ -55,6 +55,8 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
   };
   std::vector<std::string> paths;
   for (const Building& b : scene.buildings) paths.push_back(b.source.path);
+  std::vector<Vec3> origins;
+  for (const ExportBuilding& b : buildings) origins.push_back(b.origin);
   const std::optional<ContextTiles> around = context_tiles(scene, a.texture, failures);
   try {
     files = encode_tileset(buildings,
@@ -65,7 +67,7 @@ void encode_tiles(Scene& scene, const std::vector<ExportBuilding>& buildings,
                             .largest_texture = a.texture.largest,
                             .context = around ? &*around : nullptr,
                             .take_context = writes(a, "3tz") ? Take{} : writer,
-                            .placement = find_placement(paths, a.crs, a.origin, buildings, tell)});
+                            .placement = find_placement(paths, a.crs, a.origin, origins, tell)});
   } catch (const std::exception& e) {
     if (unwritten) std::rethrow_exception(unwritten);
     scene.tileset_failure = e.what();

@@ -38,11 +38,11 @@ std::optional<Georeference> georeference_of_sources(const std::vector<std::strin
 
 /// The map of a place that files beside the input tell of: nothing, with a warning, where it is no
 /// place for these buildings.
-std::optional<EarthMap> try_place(const Georeference& g, const std::vector<ExportBuilding>& all,
+std::optional<EarthMap> try_place(const Georeference& g, const std::vector<Vec3>& origins,
                                   const Tell& tell) {
   try {
-    EarthMap map = place_on_earth(g, all.front().origin);
-    for (const ExportBuilding& b : all) map.to_ecef(b.origin);
+    EarthMap map = place_on_earth(g, origins.front());
+    for (const Vec3& origin : origins) map.to_ecef(origin);
     return map;
   } catch (const Error& error) {
     const bool is_named = error.item == g.source;
@@ -54,16 +54,16 @@ std::optional<EarthMap> try_place(const Georeference& g, const std::vector<Expor
 }  // namespace
 
 Placement find_placement(const std::vector<std::string>& source_paths, const std::string& crs,
-                         const std::string& origin, const std::vector<ExportBuilding>& buildings,
+                         const std::string& origin, const std::vector<Vec3>& origins,
                          const Tell& tell) {
   const std::optional<Georeference> given = georeference_from_options(crs, origin);
   std::optional<Georeference> found;
   if (!given && crs.empty()) found = georeference_of_sources(source_paths, tell);
   std::optional<EarthMap> map;
   if (given)
-    map = place_on_earth(*given, buildings.front().origin);
+    map = place_on_earth(*given, origins.front());
   else if (found)
-    map = try_place(*found, buildings, tell);
+    map = try_place(*found, origins, tell);
   if (!map) {
     if (!found)
       tell({Level::kInfo,

@@ -13,7 +13,7 @@ namespace colod {
 /// cannot be read nowhere, with a warning: never an invented place. Throws Error{kUsage} for
 /// options that name no place.
 Placement find_placement(const std::vector<std::string>& source_paths, const std::string& crs,
-                         const std::string& origin, const std::vector<ExportBuilding>& buildings,
+                         const std::string& origin, const std::vector<Vec3>& origins,
                          const Tell& tell);
 
 }  // namespace colod

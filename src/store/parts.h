@@ -52,6 +52,7 @@ class Statement {
 
   bool is_null() const;  ///< the next column
   std::string text();
+  std::string bytes();
   double real();
   std::int64_t integer();
   template <typename T>
@@ -97,6 +98,9 @@ void read_json(const std::string& text, const std::string& path, const char* wha
   }
 }
 
+/// Deletes a database's file, and what a killed run left beside it.
+void remove_database(const std::string& path);
+
 /// A database of SQLite, closed at the end.
 struct Database {
   std::string path;
@@ -106,6 +110,13 @@ struct Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
   ~Database();
+
+  /// `flags` of SQLite. Throws Error, kOutput where it may be made.
+  void open(int flags);
+  /// Whether the last call failed since the file is no whole database.
+  bool is_damaged() const;
+  /// Whether all its pages and keys are as they must be; what rows hold may be anything.
+  bool is_intact() const;
 
   Statement read(const char* sql) const { return {db, path, Stage::kInput, sql}; }
   Statement write(const char* sql) const { return {db, path, Stage::kOutput, sql}; }
@@ -120,8 +131,9 @@ struct Store::Impl : Database {
   std::vector<std::string> schema() const;
   /// Whether it was segmented by the rules, and their numbers, of this colod.
   bool has_these_rules() const;
-  /// Throws Error{kInput} where they are not a scene file's own.
-  void check_schema() const;
+  bool has_own_schema() const;  ///< and none besides
+  /// Of this format, or empty.
+  bool is_scene_file() const;
 
   // rows.cpp
   void put_building(const Building& b, int order, const std::string& key) const;

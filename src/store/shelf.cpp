@@ -6,20 +6,28 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
 #include <set>
 
+#include "core/hash.h"
 #include "parts.h"
 
 namespace colod {
 namespace {
 
-constexpr int kShelfFormat = 0x434c4401;  // PRAGMA user_version, far from those of scene files
+constexpr int kShelfFormat = 0x434c4402;  // PRAGMA user_version, far from those of scene files
 
 constexpr const char* kShelfSchema =
-    "CREATE TABLE piece(name TEXT NOT NULL, part TEXT NOT NULL, bytes BLOB NOT NULL, "
-    "PRIMARY KEY(name, part))";
+    "CREATE TABLE piece(name TEXT NOT NULL, part TEXT NOT NULL, parts INTEGER NOT NULL, "
+    "hash TEXT NOT NULL, bytes BLOB NOT NULL, PRIMARY KEY(name, part))";
 
 enum class Content { kNothing, kShelf, kOther };
+
+/// Of a piece, and of how many there are under its name.
+std::string seal_of(const std::string& name, const std::string& part, std::int64_t parts,
+                    const std::string& bytes) {
+  return hash_of(name + '\0' + part + '\0' + std::to_string(parts) + '\0' + bytes);
+}
 
 }  // namespace
 
@@ -39,23 +47,19 @@ struct Shelf::Impl : Database {
     Statement tables = read("SELECT 1 FROM sqlite_master");
     return found == 0 && !tables.step() ? Content::kNothing : Content::kOther;
   } catch (const Error&) {
-    return Content::kOther;
+    if (is_damaged()) return Content::kOther;
+    throw;
   }
 };
 
 Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
-  const int flags = SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0);
-  if (sqlite3_open_v2(path.c_str(), &impl_->db, flags, nullptr) != SQLITE_OK)
-    throw Error(is_new_allowed ? Stage::kOutput : Stage::kInput, path,
-                std::string("cannot be opened: ") + sqlite3_errmsg(impl_->db));
+  impl_->open(SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0));
   switch (impl_->content()) {
     case Content::kShelf:
       return;
     case Content::kOther:
-      throw Error(Stage::kInput, path,
-                  "is damaged, or not what this colod exports of a cell: delete it, and run colod "
-                  "export again");
+      throw Error(Stage::kInput, path, "is damaged, or not what this colod writes");
     case Content::kNothing:
       break;
   }
@@ -69,6 +73,20 @@ Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
 Shelf::~Shelf() = default;
 Shelf::Shelf(Shelf&&) noexcept = default;
 
+Shelf Shelf::open_or_renew(const std::string& path,
+                           const std::function<void(const std::string&)>& tell) {
+  if (std::filesystem::exists(path)) {
+    Impl found;
+    found.path = path;
+    found.open(SQLITE_OPEN_READWRITE);
+    if (found.content() == Content::kOther || !found.is_intact()) {
+      tell(path + ": is damaged, or not what this colod writes: made anew");
+      remove_database(path);
+    }
+  }
+  return {path, true};
+}
+
 std::vector<std::string> Shelf::names() const {
   std::vector<std::string> result;
   Statement s = impl_->read("SELECT DISTINCT name FROM piece ORDER BY name");
@@ -79,17 +97,40 @@ std::vector<std::string> Shelf::names() const {
 void Shelf::put(const std::string& name, const Pieces& pieces) {
   impl_->transaction([&] {
     impl_->write("DELETE FROM piece WHERE name = ?1").bind(name).run();
-    Statement s = impl_->write("INSERT INTO piece VALUES(?1, ?2, ?3)");
+    Statement s = impl_->write("INSERT INTO piece VALUES(?1, ?2, ?3, ?4, ?5)");
+    const auto parts = static_cast<std::int64_t>(pieces.size());
     for (const auto& [part, bytes] : pieces)
-      s.bind(name).bind(part).bind_bytes(bytes.data(), bytes.size()).run();
+      s.bind(name)
+          .bind(part)
+          .bind(parts)
+          .bind(seal_of(name, part, parts, bytes))
+          .bind_bytes(bytes.data(), bytes.size())
+          .run();
   });
 }
 
+Shelf::State Shelf::state(const std::string& name) const {
+  Statement s = impl_->read("SELECT part, parts, hash, bytes FROM piece WHERE name = ?1");
+  s.bind(name);
+  std::int64_t found = 0, parts = 0;
+  while (s.step()) {
+    ++found;
+    const std::string part = s.text();
+    parts = s.integer();
+    const std::string seal = s.text();
+    if (seal != seal_of(name, part, parts, s.bytes())) return State::kDamaged;
+  }
+  if (found == 0) return State::kAbsent;
+  return found == parts ? State::kWhole : State::kDamaged;
+}
+
 std::string Shelf::get(const std::string& name, const std::string& piece) const {
-  Statement s = impl_->read("SELECT bytes FROM piece WHERE name = ?1 AND part = ?2");
+  Statement s = impl_->read("SELECT parts, hash, bytes FROM piece WHERE name = ?1 AND part = ?2");
   if (!s.bind(name).bind(piece).step()) return {};
-  const std::vector<char> bytes = s.array<char>();
-  return {bytes.begin(), bytes.end()};
+  const std::int64_t parts = s.integer();
+  const std::string seal = s.text();
+  std::string bytes = s.bytes();
+  return seal == seal_of(name, piece, parts, bytes) ? bytes : std::string();
 }
 
 void Shelf::keep_only(const std::vector<std::string>& names) {

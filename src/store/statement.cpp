@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "parts.h"
 
@@ -64,6 +65,11 @@ std::string Statement::text() {
   return data ? std::string(data, static_cast<std::size_t>(size)) : std::string();
 }
 
+std::string Statement::bytes() {
+  const std::span<const std::byte> all = blob();
+  return {reinterpret_cast<const char*>(all.data()), all.size()};
+}
+
 double Statement::real() {
   const double value = sqlite3_column_double(statement_, read_++);
   check_numbers({&value, 1});
@@ -91,6 +97,25 @@ void Statement::check(int code) const {
 
 Database::~Database() { sqlite3_close(db); }
 
+void Database::open(int flags) {
+  if (sqlite3_open_v2(path.c_str(), &db, flags, nullptr) != SQLITE_OK)
+    throw Error(flags & SQLITE_OPEN_CREATE ? Stage::kOutput : Stage::kInput, path,
+                std::string("cannot be opened: ") + sqlite3_errmsg(db));
+}
+
+bool Database::is_damaged() const {
+  const int code = sqlite3_errcode(db);
+  return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
+}
+
+bool Database::is_intact() const try {
+  Statement s = read("PRAGMA integrity_check(1)");
+  return s.step() && s.text() == "ok";
+} catch (const Error&) {
+  if (is_damaged()) return false;
+  throw;
+}
+
 void Database::execute(const char* sql, Stage stage) const {
   if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
     throw Error(stage, path, std::string("scene file: ") + sqlite3_errmsg(db));
@@ -105,6 +130,11 @@ void Database::transaction(const std::function<void()>& body) const {
     sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
     throw;
   }
+}
+
+void remove_database(const std::string& path) {
+  std::filesystem::remove(path);
+  std::filesystem::remove(path + "-journal");
 }
 
 }  // namespace colod

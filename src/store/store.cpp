@@ -9,6 +9,7 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
 #include <set>
 
 #include "core/hash.h"
@@ -63,29 +64,32 @@ std::vector<std::string> Store::Impl::schema() const {
 }
 
 /// A file may say anything of what its tables are, and a view or trigger runs when one is read.
-void Store::Impl::check_schema() const {
+bool Store::Impl::has_own_schema() const {
   Impl own;
   if (sqlite3_open(":memory:", &own.db) != SQLITE_OK)
     throw Error(Stage::kProcess, path, "no memory for its schema");
   own.execute(kSchema, Stage::kProcess);
-  if (schema() != own.schema())
-    throw Error(
-        Stage::kInput, path,
-        "damaged: its tables are not those of a scene file of format " + std::to_string(kFormat));
+  return schema() == own.schema();
+}
+
+bool Store::Impl::is_scene_file() const {
+  Statement version = read("PRAGMA user_version");
+  version.step();
+  return version.integer() == kFormat ? has_own_schema() : schema().empty();
 }
 
 Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
-  const int flags = SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0);
-  if (sqlite3_open_v2(path.c_str(), &impl_->db, flags, nullptr) != SQLITE_OK)
-    throw Error(is_new_allowed ? Stage::kOutput : Stage::kInput, path,
-                std::string("cannot open the scene file: ") + sqlite3_errmsg(impl_->db));
+  impl_->open(SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0));
   impl_->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", Stage::kInput);
   Statement version = impl_->read("PRAGMA user_version");
   version.step();
   const std::int64_t found = version.integer();
   if (found == kFormat) {
-    impl_->check_schema();
+    if (!impl_->has_own_schema())
+      throw Error(
+          Stage::kInput, path,
+          "damaged: its tables are not those of a scene file of format " + std::to_string(kFormat));
     return;
   }
   if (found != 0)
@@ -99,6 +103,20 @@ Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
     impl_->execute(kSchema, Stage::kOutput);
     impl_->execute(("PRAGMA user_version = " + std::to_string(kFormat)).c_str(), Stage::kOutput);
   });
+}
+
+Store Store::open_or_renew(const std::string& path,
+                           const std::function<void(const std::string&)>& tell) {
+  if (std::filesystem::exists(path)) {
+    Impl found;
+    found.path = path;
+    found.open(SQLITE_OPEN_READWRITE);
+    if (!found.is_intact() || !found.is_scene_file()) {
+      tell(path + ": is damaged, or no scene file of this colod: made anew");
+      remove_database(path);
+    }
+  }
+  return {path, true};
 }
 
 Store::~Store() = default;

@@ -5,6 +5,7 @@
 // on with the missing ones.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -24,6 +25,10 @@ class Store {
   Store(const std::string& path, bool is_new_allowed);
   ~Store();
   Store(Store&&) noexcept;
+  /// Opens or makes a file that a run can make again: one that is damaged, or no scene file of this
+  /// colod, is deleted, `tell` gets a line that says so, and a new one is begun. Reads all of it.
+  static Store open_or_renew(const std::string& path,
+                             const std::function<void(const std::string& line)>& tell);
 
   /// Other options outdate the analysis, another number of layers, other rules or a colod with
   /// other ones the meshes too: they go away.

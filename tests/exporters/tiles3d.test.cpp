@@ -58,8 +58,10 @@ std::vector<Met> walk(const std::vector<Encoded>& files) {
     const double error = met.tile["geometricError"];
     const std::string uri = met.tile["content"]["uri"];
     if (uri.ends_with(".json")) {
-      const std::string folder = uri.substr(0, uri.rfind('/') + 1);
-      open.push_back({Json::parse(find(files, uri).bytes)["root"], met.transform, folder, error,
+      const std::string path =
+          std::filesystem::path(met.folder + uri).lexically_normal().generic_string();
+      const std::string folder = path.substr(0, path.rfind('/') + 1);
+      open.push_back({Json::parse(find(files, path).bytes)["root"], met.transform, folder, error,
                       met.depth + 1});
     }
     for (const Json& child : met.tile.value("children", Json::array()))
@@ -86,6 +88,24 @@ std::vector<ExportBuilding> detailed_street(int n) {
   }
   return buildings;
 }
+
+/// A tree with nothing taken away.
+struct WholePlan {
+  explicit WholePlan(const std::vector<ExportBuilding>& buildings,
+                     std::size_t most_entries = kMostEntries) {
+    std::vector<TileOutline> outlines;
+    for (const ExportBuilding& b : buildings) outlines.push_back(outline_of(b));
+    root = plan_tiles(outlines,
+                      {.open = [](const std::vector<int>&) {},
+                       .at = [&](int b) -> const ExportBuilding& { return buildings[b]; },
+                       .finish = [](PlannedTile&) {}},
+                      {}, most_entries);
+    show_boxes(root, meshes);
+  }
+
+  PlannedTile root;
+  std::deque<PolygonMesh> meshes;
+};
 
 }  // namespace
 
@@ -149,16 +169,14 @@ TEST_CASE("a box is shown from farther away than the level that it stands for, a
                                    {.measure = measure, .visual_error = 2, .layer_gsd = {}}));
       CHECK(boxes.back().gsd > 1.15 * b.levels.front().gsd);
     }
-    std::vector<StandInBox> alike = boxes;
-    agree_on_switch(alike, {.layer_gsd = {0.6, 0.3, 0}});
-    agree_on_switch(boxes, {.scope = "building", .layer_gsd = {}});
-    std::set<double> own, shared;
-    for (const StandInBox& box : boxes) own.insert(box.gsd);
-    for (const StandInBox& box : alike) shared.insert(box.gsd);
-    CHECK(own.size() > 1);
-    REQUIRE(shared.size() == 1);
-    CHECK(*shared.begin() >= *own.begin());
-    CHECK(*shared.begin() > 0.7);
+    std::vector<double> own;
+    for (const StandInBox& box : boxes) own.push_back(box.gsd);
+    CHECK(std::set<double>(own.begin(), own.end()).size() > 1);
+    CHECK_FALSE(shared_gsd(own, {.scope = "building", .layer_gsd = {}}));
+    const std::optional<double> shared = shared_gsd(own, {.layer_gsd = {0.6, 0.3, 0}});
+    REQUIRE(shared);
+    CHECK(*shared >= *std::min_element(own.begin(), own.end()));
+    CHECK(*shared > 0.7);
   }
 }
 
@@ -252,7 +270,10 @@ TEST_CASE("levels that come cell by cell give the tileset that levels in memory 
   std::mutex mutex;
   int there = 0, most = 0;
   std::vector<Encoded> made;
-  const LevelDepot depot{.get =
+  const LevelDepot depot{.open = [](const std::vector<int>&) {},
+                         .close = [] {},
+                         .at = [&](int b) -> const ExportBuilding& { return bare[b]; },
+                         .get =
                              [&](int b) {
                                for (std::size_t k = 0; k < all[b].levels.size(); ++k)
                                  bare[b].levels[k] = all[b].levels[k];
@@ -266,9 +287,10 @@ TEST_CASE("levels that come cell by cell give the tileset that levels in memory 
                                const std::lock_guard lock(mutex);
                                --there;
                              },
+                         .named = [&](int b) { return bare[b]; },
                          .coarsest = [&](int b) { return coarsest_look(all[b].levels.front()); }};
   const std::vector<Encoded> rest =
-      encode_tileset(bare, outlines, depot, {}, [&](const Encoded& f) { made.push_back(f); });
+      encode_tileset(outlines, depot, {}, [&](const Encoded& f) { made.push_back(f); });
   REQUIRE(!made.empty());
   CHECK(rest.front().path == "tileset.json");
   CHECK(there == 0);
@@ -297,22 +319,31 @@ TEST_CASE("tiles that would be made from the same again are left as they are") {
   std::map<std::string, std::string> disk;
   std::map<std::string, std::map<std::string, TileFacts>> memory;
   KeptTiles kept{
-      .keys = std::vector<std::string>(all.size(), "old"),
-      .get = [&](const std::string& folder) { return memory[folder]; },
+      .keys = std::vector<BuildingKey>(all.size(), {1, 2}),
+      .find = [&](const std::string& folder, const std::string& path,
+                  const std::string& key) -> std::optional<TileFacts> {
+        const auto found = memory[folder].find(path);
+        if (found == memory[folder].end() || found->second.key != key) return {};
+        return found->second;
+      },
       .put = [&](const std::string& folder, const auto& facts) { memory[folder] = facts; }};
   std::mutex mutex;
   std::set<int> asked;
-  const LevelDepot depot{.get =
+  const LevelDepot depot{.open = [](const std::vector<int>&) {},
+                         .close = [] {},
+                         .at = [&](int b) -> const ExportBuilding& { return all[b]; },
+                         .get =
                              [&](int b) {
                                const std::lock_guard lock(mutex);
                                asked.insert(b);
                              },
                          .drop = [](int) {},
+                         .named = [&](int b) { return all[b]; },
                          .coarsest = [&](int b) { return coarsest_look(all[b].levels.front()); }};
   const auto encode = [&] {
     std::set<std::string> made;
     const auto take = [&](const Encoded& f) { disk[f.path] = f.bytes, made.insert(f.path); };
-    take(encode_tileset(all, outlines, depot, {.kept = &kept}, take).front());
+    take(encode_tileset(outlines, depot, {.kept = &kept}, take).front());
     return made;
   };
   const auto check_whole = [&] {
@@ -343,7 +374,7 @@ TEST_CASE("tiles that would be made from the same again are left as they are") {
     for (Vec3& v : level.mesh.vertices)
       if (v.z() > 1 && v.z() < 2.9) v.z() -= 0.5;
   all[7].given_name = "house 7, rebuilt";
-  kept.keys[7] = "new";
+  kept.keys[7] = {1, 3};
   outlines[7] = outline_of(all[7]);
   const std::set<std::string> again = encode();
   CHECK(again.contains("tiles/root.glb"));
@@ -366,7 +397,7 @@ TEST_CASE("below a group each finer level gets a tile, and a lone level its own 
     house.levels.erase(house.levels.begin(), house.levels.end() - static_cast<long>(count));
     const std::vector<ExportBuilding> buildings = {house, three_layers("other", Vec3::Zero())};
     std::vector<int> shown;
-    TilePlan plan = plan_tiles(buildings);
+    const WholePlan plan(buildings);
     const PlannedTile& boxes = plan.root.children.at(0);
     const PlannedTile* tile = &boxes.children.at(0).children.at(0);
     while (true) {
@@ -383,7 +414,7 @@ TEST_CASE("below a group each finer level gets a tile, and a lone level its own 
 
 TEST_CASE("every tile shows the buildings below it, each once, and no other") {
   const std::vector<ExportBuilding> buildings = street(300);
-  const TilePlan plan = plan_tiles(buildings);
+  const WholePlan plan(buildings);
   const std::function<std::set<int>(const PlannedTile&)> check = [&](const PlannedTile& tile) {
     std::vector<int> shown;
     for (const TilePart& part : tile.parts)
