@@ -246,7 +246,7 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
 /// What tells that a file is a place or a piece of one. It is read the way up that it seems to
 /// stand.
 PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
-  if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true};
+  if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true, ""};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;
   PlaceDoubt found;
@@ -255,7 +255,7 @@ PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
       if (found.is_certain) break;
       if (const PlaceDoubt own = looks_like_scene(s); !own.why.empty()) found = own;
       if (!found.is_certain && s.is_turned_back && !is_axis_said && is_wide(s))
-        found = {"is as wide as a scene and lies on its side (--up auto turns it)", true};
+        found = {"is as wide as a scene and lies on its side (--up auto turns it)", true, ""};
     }
   } catch (const std::exception&) {
     return {};  // whoever reads it for the work tells of it
@@ -263,12 +263,17 @@ PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
   return found;
 }
 
-/// Meshes that are taken for buildings since nothing says that they are scenes: a failure of each
-/// that looks like one, though it is built, and a warning where it may be.
-void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
+/// Of meshes that nothing says of whether they are scenes.
+std::vector<PlaceDoubt> doubts_of(const ReadOptions& read, const Inventory& inventory) {
   std::vector<PlaceDoubt> doubts(inventory.files.size());
   parallel_for(inventory.files.size(),
                [&](std::size_t i) { doubts[i] = doubt(inventory.files[i], read); });
+  return doubts;
+}
+
+/// They are taken for buildings: a failure of each that looks like a scene, though it is built, and
+/// a warning where it may be.
+void tell_doubts(const std::vector<PlaceDoubt>& doubts, Inventory& inventory) {
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     const std::string& path = inventory.files[i].path;
     const std::string text = doubts[i].why +
@@ -279,6 +284,14 @@ void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
     else if (!doubts[i].why.empty())
       inventory.warnings.push_back(path + ": " + text);
   }
+}
+
+/// Why the one file that is named is a scene; empty: it is none, or there are several.
+std::string whole_place(const std::vector<std::string>& inputs,
+                        const std::vector<PlaceDoubt>& doubts) {
+  const bool is_one_file =
+      inputs.size() == 1 && doubts.size() == 1 && std::filesystem::is_regular_file(inputs[0]);
+  return is_one_file ? doubts[0].place : "";
 }
 
 Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
@@ -320,13 +333,18 @@ Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& re
                    const SceneChoice& choice, const SceneOutput& output, const Tell& tell) {
   if (const std::string why = reason_to_part(inputs, choice); !why.empty())
     return open_scene(inputs[0], why, read, choice, output, tell);
+  Inputs out;
+  out.inventory = take_inventory(inputs, read);
+  if (choice.mode == SceneMode::kAuto) {
+    const std::vector<PlaceDoubt> doubts = doubts_of(read, out.inventory);
+    if (const std::string why = whole_place(inputs, doubts); !why.empty())
+      return open_scene(inputs[0], why, read, choice, output, tell);
+    tell_doubts(doubts, out.inventory);
+  }
   if (!choice.footprints.empty())
     throw Error(Stage::kUsage, "--footprints",
                 "is for scenes, and these inputs are files of single buildings; --scene scene "
                 "takes one for a scene");
-  Inputs out;
-  out.inventory = take_inventory(inputs, read);
-  if (choice.mode == SceneMode::kAuto) doubt_buildings(read, out.inventory);
   out.read = [files = out.inventory.files, read](std::size_t file) {
     return read_file(files[file], read);
   };

@@ -163,18 +163,22 @@ bool is_cut_through(const Plan& plan) {
          std::any_of(plan.groups.begin(), plan.groups.end(), is_cut_off);
 }
 
-std::string reason(const Plan& plan) {
+PlaceDoubt doubt_of(const Plan& plan) {
   const auto houses = std::count_if(plan.groups.begin(), plan.groups.end(),
                                     [](const Group& g) { return g.area >= kLeastHouse; });
-  if (plan.ground >= kLeastGround && houses >= (plan.is_tile ? kLeastHousesOfTile : kLeastHouses))
-    return "looks like a scene: " + std::to_string(houses) +
-           " buildings stand apart on terrain that takes " + percent(plan.ground) + " of its plan";
+  if (plan.ground >= kLeastGround && houses >= (plan.is_tile ? kLeastHousesOfTile : kLeastHouses)) {
+    const std::string place = std::to_string(houses) +
+                              " buildings stand apart on terrain that takes " +
+                              percent(plan.ground) + " of its plan";
+    return {"looks like a scene: " + place, true, place};
+  }
   if (is_bare(plan, houses))
-    return "looks like a piece of terrain: it takes " + percent(plan.ground) +
-           " of its plan, buildings " + percent(plan.built);
+    return {"looks like a piece of terrain: it takes " + percent(plan.ground) +
+                " of its plan, buildings " + percent(plan.built),
+            true, ""};
   if (is_cut_through(plan))
-    return "looks like a piece of a scene: its border cuts through buildings";
-  return "";
+    return {"looks like a piece of a scene: its border cuts through buildings", true, ""};
+  return {};
 }
 
 }  // namespace
@@ -190,11 +194,11 @@ PlaceDoubt looks_like_scene(const Source& source) {
   Plan plan = plan_of(source.mesh, open, heights_of(source, box));
   plan.is_tile = straight >= kStraightSides && plan.rim.at_top >= kMostAtTop;
   plan.side = side;
-  if (const std::string why = reason(plan); side >= kLeastTile && !why.empty()) return {why, true};
+  if (const PlaceDoubt doubt = doubt_of(plan); side >= kLeastTile && doubt.is_certain) return doubt;
   if (plan.is_tile && plan.rim.ground >= kGroundAtRim)
     return {"is cut off straight on " + std::to_string(straight) +
                 " sides of its plan, as tiles of scenes are",
-            false};
+            false, ""};
   return {};
 }
 

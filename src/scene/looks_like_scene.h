@@ -11,6 +11,7 @@ namespace colod {
 struct PlaceDoubt {
   std::string why;
   bool is_certain = false;  ///< several buildings, parts of them, or none: no single one
+  std::string place;        ///< of several whole buildings on terrain: how many; else empty
 };
 
 /// What tells that a mesh is a place with terrain and several buildings, or a piece of one. Nothing
