@@ -12,6 +12,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "read/airborne.h"
+#include "scene/cloud_surface.h"
 #include "scene/looks_like_scene.h"
 
 namespace colod {
@@ -229,6 +231,36 @@ std::vector<ClassArea> areas_of(const HeightMap& map, const SceneClasses& classe
   return out;
 }
 
+/// The clouds among a scene's files; none: all are meshes. Throws Error{kInput} for some of each.
+std::vector<std::string> clouds_of(const std::string& input, const TileTree& tree) {
+  std::vector<std::string> clouds;
+  std::size_t meshes = 0;
+  for (const TileNode& node : tree.nodes)
+    for (const std::string& file : node.contents)
+      if (is_airborne(file))
+        clouds.push_back(file);
+      else
+        ++meshes;
+  if (!clouds.empty() && meshes > 0)
+    throw Error(Stage::kInput, input,
+                "holds " + std::to_string(clouds.size()) + " clouds and " + std::to_string(meshes) +
+                    " other files: a scene is of one kind");
+  return clouds;
+}
+
+/// The surface of a cloud as the scene's tiles.
+SceneTiles open_cloud(const std::string& input, const std::string& why, CloudSurface surface,
+                      Inputs& out, const Tell& tell) {
+  SceneTiles tiles(input, std::make_shared<const HeightMap>(std::move(surface.map)));
+  out.inventory.warnings = std::move(surface.warnings);
+  std::ostringstream text;
+  text << input << ": taken for a scene, since " << why << ": " << surface.points << " points, "
+       << std::setprecision(2) << surface.density << " a m², read as a surface in cells of "
+       << tiles.surface()->cell << " m, " << size_text(tiles.box());
+  say(tell, Level::kInfo, text.str());
+  return tiles;
+}
+
 /// The tiles, in the scene's frame. Throws Error{kInput} where none can be read.
 SceneTiles open_tiles(const std::string& input, TileTree tree,
                       const std::optional<Georeference>& place, bool is_ecef, int coarser,
@@ -294,22 +326,50 @@ std::string whole_place(const std::vector<std::string>& inputs,
   return is_one_file ? doubts[0].place : "";
 }
 
-Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
-                  const SceneChoice& choice, const SceneOutput& options, const Tell& tell) {
-  TileTree tree = list_tiles(input, read);
-  bool is_ecef = false;
-  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
-  SceneTiles tiles = open_tiles(input, std::move(tree), place, is_ecef, choice.source_level, read);
-  Inputs out;
+/// The meshes of a scene as its tiles.
+SceneTiles open_meshes(const std::string& input, const std::string& why, SceneTiles tiles,
+                       Inputs& out, const Tell& tell) {
   out.inventory.failures = tiles.failures();
   out.inventory.warnings = tiles.warnings();
   say(tell, Level::kInfo,
       input + ": taken for a scene, since " + why + ": " + std::to_string(tiles.count()) +
           " tiles, " + std::to_string(tiles.faces()) + " faces, " + size_text(tiles.box()));
+  return tiles;
+}
+
+/// The surface of the one cloud that is named, where it shows several buildings; `why` says so.
+std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
+                                        const ReadOptions& read, std::string& why) {
+  if (inputs.size() != 1 || !is_airborne(inputs[0])) return {};
+  try {
+    CloudSurface surface = surface_of(inputs, read);
+    why = looks_like_scene(surface.map).place;
+    if (!why.empty()) return surface;
+  } catch (const std::exception&) {
+    return {};  // whoever reads it for the work tells of it
+  }
+  return {};
+}
+
+/// `cloud`: that is known already.
+Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
+                  const SceneChoice& choice, const SceneOutput& options, const Tell& tell,
+                  std::optional<CloudSurface> cloud = {}) {
+  TileTree tree = list_tiles(input, read);
+  bool is_ecef = false;
+  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
+  Inputs out;
+  const std::vector<std::string> clouds = clouds_of(input, tree);
+  if (!clouds.empty() && !cloud) cloud = surface_of(clouds, read);
+  SceneTiles tiles = cloud ? open_cloud(input, why, std::move(*cloud), out, tell)
+                           : open_meshes(input, why,
+                                         open_tiles(input, std::move(tree), place, is_ecef,
+                                                    choice.source_level, read),
+                                         out, tell);
   HeightMap map;
   SceneClasses classes;
   if (choice.footprints.empty() || choice.context != ContextMode::kNone) {
-    map = survey(tiles, kSurveyImages);
+    map = tiles.surface() ? *tiles.surface() : survey(tiles, kSurveyImages);
     classes = classify(map);
     out.classes = areas_of(map, classes);
   }
@@ -333,6 +393,11 @@ Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& re
                    const SceneChoice& choice, const SceneOutput& output, const Tell& tell) {
   if (const std::string why = reason_to_part(inputs, choice); !why.empty())
     return open_scene(inputs[0], why, read, choice, output, tell);
+  if (choice.mode == SceneMode::kAuto) {
+    std::string why;
+    if (auto cloud = whole_cloud(inputs, read, why))
+      return open_scene(inputs[0], why, read, choice, output, tell, std::move(cloud));
+  }
   Inputs out;
   out.inventory = take_inventory(inputs, read);
   if (choice.mode == SceneMode::kAuto) {

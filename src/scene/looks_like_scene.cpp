@@ -202,6 +202,20 @@ PlaceDoubt looks_like_scene(const Source& source) {
   return {};
 }
 
+PlaceDoubt looks_like_scene(const HeightMap& map) {
+  const SceneClasses classes = classify(map);
+  Plan plan;
+  const auto count = [&](SceneClass c) {
+    return static_cast<double>(std::count(classes.of_cell.begin(), classes.of_cell.end(), c));
+  };
+  const double cells = static_cast<double>(map.size());
+  plan.ground = count(SceneClass::kGround) / std::max(cells - count(SceneClass::kNothing), 1.0);
+  plan.groups = groups_of(map, classes, std::vector<char>(map.size(), 0));
+  plan.side = map.cell * std::min(map.width, map.height);
+  PlaceDoubt doubt = doubt_of(plan);
+  return plan.side >= kLeastTile && !doubt.place.empty() ? doubt : PlaceDoubt{};
+}
+
 bool is_wide(const Source& source) {
   return bounding_box(source.mesh.vertices).size().head<2>().maxCoeff() >= kLeastSide;
 }

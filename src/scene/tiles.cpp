@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include "cloud_surface.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -76,7 +77,8 @@ struct SceneTiles::Impl {
     std::list<std::size_t>::iterator place;
   };
   TileTree tree;
-  Matrix to_scene;
+  std::shared_ptr<const HeightMap> surface;
+  Matrix to_scene = Matrix::Identity();
   ReadOptions options;
   std::vector<Tile> tiles;
   std::vector<int> finest;
@@ -93,6 +95,7 @@ struct SceneTiles::Impl {
   void set_upright(std::vector<Facts>& facts, bool may_turn);
   Source read(std::size_t i) const {
     const Tile& tile = tiles[i];
+    if (surface) return surface_tile(*surface, tile.node - 1);
     return read_tile(tree.nodes[static_cast<std::size_t>(tile.node)], tile.content, to_scene,
                      options);
   }
@@ -197,6 +200,22 @@ SceneTiles::SceneTiles(TileTree tree, const Matrix& to_scene, int coarser, bool 
   impl_->look_through(coarser, may_turn);
 }
 
+SceneTiles::SceneTiles(const std::string& path, std::shared_ptr<const HeightMap> surface)
+    : impl_(std::make_unique<Impl>()) {
+  TileTree& tree = impl_->tree;
+  tree.path = path;
+  tree.nodes.emplace_back();
+  tree.nodes[0].is_added = true;
+  for (int i = 0; i < tile_count(*surface); ++i) {
+    tree.nodes[0].children.push_back(i + 1);
+    TileNode& node = tree.nodes.emplace_back();
+    node.contents = {path};
+    node.parent = 0;
+  }
+  impl_->surface = std::move(surface);
+  impl_->look_through(0, false);
+}
+
 SceneTiles::~SceneTiles() = default;
 SceneTiles::SceneTiles(SceneTiles&&) noexcept = default;
 
@@ -209,6 +228,8 @@ const Matrix& SceneTiles::to_scene() const { return impl_->to_scene; }
 std::size_t SceneTiles::faces() const { return impl_->faces; }
 const std::vector<ReadFailure>& SceneTiles::failures() const { return impl_->failures; }
 const std::vector<std::string>& SceneTiles::warnings() const { return impl_->warnings; }
+
+const std::shared_ptr<const HeightMap>& SceneTiles::surface() const { return impl_->surface; }
 
 std::shared_ptr<const Source> SceneTiles::get(std::size_t tile) const {
   if (auto kept = impl_->find(tile)) return kept;
