@@ -58,8 +58,8 @@ class Beams {
 }  // namespace
 
 std::vector<SynthPoint> scan_from_above(const Town& town, const std::map<int, Standing>& standing,
-                                        const SkyView& view, const TilePlace& place,
-                                        double density, std::uint64_t seed) {
+                                        const SkyView& view, const TilePlace& place, double density,
+                                        std::uint64_t seed) {
   const Beams beams(town, standing, view);
   const double step = 1 / std::sqrt(density);
   const Vec2 low = place.cell * Vec2(place.i0, place.j0);

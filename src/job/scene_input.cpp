@@ -269,9 +269,10 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
       is_ecef ? local_from_ecef(*place) : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
   SceneTiles tiles(std::move(tree), to_scene, coarser, !is_ecef, read);
   if (tiles.count() > 0) return tiles;
-  const std::string first = tiles.failures().empty() ? ""
-                                                     : ": " + tiles.failures()[0].path + ": " +
-                                                           tiles.failures()[0].message;
+  const std::string first =
+      tiles.failures().empty()
+          ? ": they hold no faces; of clouds, LAS and LAZ can be scenes"
+          : ": " + tiles.failures()[0].path + ": " + tiles.failures()[0].message;
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 

@@ -1,5 +1,5 @@
-// Based on: surface models of airborne laser scanning: the highest point of each cell; slope limiters
-// as in finite volumes (P. Roe, 1986), which leave ridges and eaves where they are.
+// Based on: surface models of airborne laser scanning: the highest point of each cell; slope
+// limiters as in finite volumes (P. Roe, 1986), which leave ridges and eaves where they are.
 #include "cloud_surface.h"
 
 #include <algorithm>
@@ -235,15 +235,22 @@ CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions
 
 namespace {
 
-int tiles_along(int cells) { return std::max(1, (cells - 2) / kTile + 1); }
+/// Steps between cells along one side of a map, shared out evenly.
+struct Steps {
+  int steps, tiles;
+  explicit Steps(int cells) : steps(std::max(1, cells - 1)), tiles((steps + kTile - 1) / kTile) {}
+  int begin(int tile) const { return static_cast<int>(static_cast<long>(steps) * tile / tiles); }
+};
 
 }  // namespace
 
-int tile_count(const HeightMap& map) { return tiles_along(map.width) * tiles_along(map.height); }
+int tile_count(const HeightMap& map) { return Steps(map.width).tiles * Steps(map.height).tiles; }
 
 Source surface_tile(const HeightMap& map, int tile) {
-  const int x0 = tile % tiles_along(map.width) * kTile, y0 = tile / tiles_along(map.width) * kTile;
-  const int x1 = std::min(x0 + kTile, map.width - 1), y1 = std::min(y0 + kTile, map.height - 1);
+  const Steps across(map.width), along(map.height);
+  const int column = tile % across.tiles, row = tile / across.tiles;
+  const int x0 = across.begin(column), x1 = std::min(across.begin(column + 1), map.width - 1);
+  const int y0 = along.begin(row), y1 = std::min(along.begin(row + 1), map.height - 1);
   const int width = x1 - x0 + 1;
   std::vector<int> number(static_cast<std::size_t>(width) * (y1 - y0 + 1), -1);
   Source out;
