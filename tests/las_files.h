@@ -28,7 +28,8 @@ void set_at(std::string& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
-inline std::string las(const std::vector<LasPoint>& points, int minor, int format, std::size_t extra = 0) {
+inline std::string las(const std::vector<LasPoint>& points, int minor, int format,
+                       std::size_t extra = 0) {
   const std::size_t head = minor == 4 ? 375 : minor == 3 ? 235 : 227;
   const std::size_t length = kLengths[format] + extra;
   std::string bytes(head + 10 + points.size() * length, '\0');

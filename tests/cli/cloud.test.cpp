@@ -26,8 +26,8 @@ struct Run {
 Run build(const TemporaryFolder& folder, const std::string& rest, const std::string& out = "out") {
   const std::string log = (folder / "log").string();
   const std::string command = std::string(COLOD_BINARY) + " build " + rest + " -o " +
-                              (folder / out).string() +
-                              " --ns 24 --nr 24 --no-report-html > " + log + " 2>&1";
+                              (folder / out).string() + " --ns 24 --nr 24 --no-report-html > " +
+                              log + " 2>&1";
   const int status = std::system(command.c_str());
   return {WEXITSTATUS(status), slurp(log)};
 }

@@ -54,8 +54,9 @@ TEST_CASE("a slope comes out as it is, at any density, and a step stays within a
   const double density = GENERATE(2, 8, 20), slope = GENERATE(0.0, 0.3, 1.0);
   CAPTURE(density, slope);
   const auto height = [&](double x) { return slope * x + (x > 20 ? 5 : 0); };
-  const CloudSurface s = surface(
-      scattered(40, density, [&](double x, double) { return LasPoint{{0, 0, height(x)}, 1}; }));
+  const CloudSurface s = surface(scattered(40, density, [&](double x, double) {
+    return LasPoint{{0, 0, height(x)}, 1};
+  }));
   CHECK(s.density == Approx(density).epsilon(0.1));
   CHECK(s.map.cell >= 0.4);
   double off = 0;
@@ -90,8 +91,9 @@ TEST_CASE("roofs under crowns are seen where classes tell, and a bird is no surf
 
 TEST_CASE("tiles of a cloud meet in the same vertices, and show each cell's square once") {
   const double side = GENERATE(30, 60, 140);
-  const CloudSurface s = surface(scattered(
-      side, 10, [](double x, double y) { return LasPoint{{0, 0, std::sin(x) + y}, 1}; }));
+  const CloudSurface s = surface(scattered(side, 10, [](double x, double y) {
+    return LasPoint{{0, 0, std::sin(x) + y}, 1};
+  }));
   std::vector<Source> tiles;
   std::size_t faces = 0;
   for (int i = 0; i < tile_count(s.map); ++i) {
@@ -108,8 +110,8 @@ TEST_CASE("tiles of a cloud meet in the same vertices, and show each cell's squa
 TEST_CASE("four houses are told, by classes and without, on roofs of any slope") {
   const double slope = GENERATE(0.0, 0.5, 1.4), density = GENERATE(4, 12);
   CAPTURE(slope, density);
-  auto points = scattered(
-      80, density, [&](double x, double y) { return four_houses(x, y, slope); });
+  auto points =
+      scattered(80, density, [&](double x, double y) { return four_houses(x, y, slope); });
   const CloudSurface told = surface(points);
   CHECK(classify(told.map).buildings == 4);
   CHECK_THAT(looks_like_scene(told.map).place, Contains("4 buildings stand apart"));
