@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "scene_look.h"
+#include "scene_points.h"
 
 namespace colod {
 
@@ -56,6 +57,7 @@ struct SynthScene::Impl {
 
 SynthScene::SynthScene(const SynthSceneOptions& options) {
   if (options.buildings < 1) throw Error(Stage::kUsage, "synth", "needs at least one building");
+  if (!(options.density > 0)) throw Error(Stage::kUsage, "synth", "a cloud needs points");
   if (!(options.edge > 0) || !(options.texel > 0))
     throw Error(Stage::kUsage, "synth", "edges and texels of a scene must be longer than nothing");
   impl_ = std::make_unique<Impl>(options);
@@ -87,6 +89,13 @@ SynthTile SynthScene::tile(int index) const {
   paint_tile(sight, impl_->options.texel, tile);
   tell_truth(sight, place, tile);
   return tile;
+}
+
+std::vector<SynthPoint> SynthScene::points(int index) const {
+  const TilePlace place = impl_->place(index % impl_->across(), index / impl_->across());
+  const std::map<int, Standing> standing = standing_on(impl_->town, impl_->pool, place);
+  return scan_from_above(impl_->town, standing, look_down(impl_->town, standing, place), place,
+                         impl_->options.density, impl_->options.seed);
 }
 
 SynthSceneBuilding SynthScene::building(int index) const {

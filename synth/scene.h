@@ -12,8 +12,9 @@ namespace colod {
 struct SynthSceneOptions {
   int buildings = 100;
   std::uint64_t seed = 1;
-  double edge = 0.6;   ///< metres, of the surface's mesh before flat places are thinned
-  double texel = 0.1;  ///< metres
+  double edge = 0.6;    ///< metres, of the surface's mesh before flat places are thinned
+  double texel = 0.1;   ///< metres
+  double density = 10;  ///< points a m², of a cloud
 };
 
 /// What a place of the surface belongs to: numbers of the truth's files.
@@ -29,6 +30,12 @@ struct SynthTile {
   Raster truth;  ///< seen from straight above, one pixel a cell, the northernmost row first: red
                  ///< the SynthClass, green and blue the building's number from 1 on, 0: none
   Vec2 truth_corner = Vec2::Zero();  ///< the least x and y of the truth's cells
+};
+
+/// Of an airborne cloud, classes as LAS numbers them.
+struct SynthPoint {
+  Vec3 at;   ///< metres, in the scene's frame
+  int kind;  ///< 1 what is none of these, 2 ground, 5 plants, 6 buildings
 };
 
 struct SynthSceneBuilding {
@@ -49,6 +56,9 @@ class SynthScene {
 
   int tile_count() const;
   SynthTile tile(int index) const;
+  /// The same piece as a laser in an aeroplane sees it, straight from above: noise of 3 cm, three
+  /// of ten beams through leaves down to the ground.
+  std::vector<SynthPoint> points(int tile) const;
   int building_count() const;
   SynthSceneBuilding building(int index) const;
   /// In x and y.

@@ -86,15 +86,15 @@ bool is_inside(const Box& inner, const Box& outer, double slack) {
 void check_content(Walk& walk, const Json& tile, const Place& place, const fs::path& path,
                    const Box& box) {
   const GlbContent content = check_glb(read_regular(path), path.string(), walk.findings);
-  if (content.meshes.empty() || content.has_transforms) return;
+  if (content.has_transforms) return;
   Box seen;
   std::vector<Box> of_feature(content.rows.size());
-  const auto& mesh = content.meshes[0];
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    seen.extend(mesh.positions[v]);
-    if (v < mesh.features.size() && mesh.features[v] < of_feature.size())
-      of_feature[mesh.features[v]].extend(mesh.positions[v]);
-  }
+  for (const auto& mesh : content.meshes)
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      seen.extend(mesh.positions[v]);
+      if (v < mesh.features.size() && mesh.features[v] < of_feature.size())
+        of_feature[mesh.features[v]].extend(mesh.positions[v]);
+    }
   if (seen.is_empty()) return;
   if (!is_inside(seen, box, kSlack))
     walk.report("content-box", place.where, "the content lies outside the tile's box (z up)");

@@ -32,7 +32,7 @@ struct GlbContent {
     double deviation = 0;                 ///< metres
   };
   nlohmann::json json;
-  std::vector<MeshContent> meshes;  ///< first primitives only; empty where damaged
+  std::vector<MeshContent> meshes;  ///< of all their primitives; empty where one is damaged
   std::vector<Row> rows;
   bool has_transforms = false;  ///< some node is moved: positions are not the scene's
 };

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kBoundsSlack = 1e-5;  // metres, and relative
 constexpr double kLeastCosine = 0.5;   // between a face and its corners' normals
+constexpr std::uint32_t kNoFeature = std::numeric_limits<std::uint32_t>::max();
 
 /// Rounding moves each corner by half a cell's diagonal at most. A face that it turned by 60
 /// degrees is therefore lower than 2.65 steps: its height's and its longest side's slopes are at
@@ -44,7 +45,7 @@ std::vector<std::uint32_t> as_ids(const std::vector<double>& values) {
   std::vector<std::uint32_t> out;
   for (const double v : values)
     out.push_back(v >= 0 && v < 4294967295.0 && v == std::floor(v) ? static_cast<std::uint32_t>(v)
-                                                                   : 4294967295u);
+                                                                   : kNoFeature);
   return out;
 }
 
@@ -299,6 +300,48 @@ void check_coverage(Glb& glb, const std::string& place, const Json& node,
   }
 }
 
+/// Joins a primitive to a mesh; where others have feature ids and it has none, no row has its.
+void append(const MeshContent& part, MeshContent& mesh) {
+  const auto first = static_cast<int>(mesh.positions.size());
+  const bool has_features = !part.features.empty() || !mesh.features.empty();
+  mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+  mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
+  if (has_features) {
+    mesh.features.resize(static_cast<std::size_t>(first), kNoFeature);
+    mesh.features.insert(mesh.features.end(), part.features.begin(), part.features.end());
+    mesh.features.resize(mesh.positions.size(), kNoFeature);
+  }
+  for (Face f : part.faces) {
+    for (int& v : f) v += first;
+    mesh.faces.push_back(f);
+  }
+}
+
+/// Primitive by primitive; empty where one of them is damaged.
+void read_mesh(Glb& glb, const Json& primitives, const std::string& where, GlbContent& out) {
+  MeshContent& mesh = out.meshes.emplace_back();
+  if (primitives.empty()) return glb.report("json", where, "a mesh without primitives");
+  bool is_whole_mesh = true;
+  for (std::size_t p = 0; p < primitives.size(); ++p) {
+    const Json& primitive = primitives.at(p);
+    const std::string place =
+        where + (primitives.size() > 1 ? ", primitive " + std::to_string(p) : "");
+    const bool is_draco =
+        primitive.value("extensions", Json::object()).contains("KHR_draco_mesh_compression");
+    MeshContent part;
+    if (!(is_draco ? read_draco : read_plain)(glb, primitive, place, part) ||
+        !is_whole(glb, place, part)) {
+      is_whole_mesh = false;
+      continue;
+    }
+    check_bounds(glb, primitive, place, part);
+    check_surface(glb, place, part);
+    check_features(glb, primitive, place, part, out.rows.size());
+    append(part, mesh);
+  }
+  if (!is_whole_mesh) mesh = {};
+}
+
 std::set<std::size_t> scene_roots(const Json& json) {
   std::set<std::size_t> roots;
   for (const Json& scene : json.value("scenes", Json::array()))
@@ -359,21 +402,8 @@ GlbContent check_glb(const std::string& bytes, const std::string& where,
   try {
     read_table(glb, out);
     const Json meshes = glb.json.value("meshes", Json::array());
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-      const std::string place = "mesh " + std::to_string(m);
-      const Json& primitive = meshes[m].at("primitives").at(0);
-      const bool is_draco =
-          primitive.value("extensions", Json::object()).contains("KHR_draco_mesh_compression");
-      MeshContent& mesh = out.meshes.emplace_back();
-      if (!(is_draco ? read_draco : read_plain)(glb, primitive, place, mesh) ||
-          !is_whole(glb, place, mesh)) {
-        mesh = {};
-        continue;
-      }
-      check_bounds(glb, primitive, place, mesh);
-      check_surface(glb, place, mesh);
-      check_features(glb, primitive, place, mesh, out.rows.size());
-    }
+    for (std::size_t m = 0; m < meshes.size(); ++m)
+      read_mesh(glb, meshes[m].at("primitives"), "mesh " + std::to_string(m), out);
     check_levels(glb, out);
     for (const Json& node : glb.json.value("nodes", Json::array()))
       for (const char* key : {"matrix", "translation", "rotation", "scale"})

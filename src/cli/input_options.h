@@ -57,8 +57,10 @@ inline void add_scene_options(CLI::App& app, SceneChoice& scene) {
                         : v == "scene"   ? SceneMode::kScene
                                          : SceneMode::kAuto;
          },
-         "auto (default): a tileset.json, a .3tz, a folder with a tileset, and a folder with "
-         "Data/Tile_*/ are scenes, all else is buildings; scene: the INPUT is a place with terrain "
+         "auto (default): a tileset.json, a .3tz, a folder with a tileset, a folder with "
+         "Data/Tile_*/, and one file that shows several buildings on terrain are scenes, all else "
+         "is "
+         "buildings; scene: the INPUT is a place with terrain "
          "and several buildings, each file of it a tile; buildings: each file holds buildings "
          "alone")
       ->check(CLI::IsMember({"auto", "buildings", "scene"}));

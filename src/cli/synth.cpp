@@ -108,25 +108,28 @@ void add_scene_options(CLI::App& app, SynthArguments& a) {
       "a whole place: hills, roads, houses, rows, courts, halls, sheds, trees, cars as "
       "one textured mesh in tiles, with its truth; --buildings (default 100), --seed, "
       "--scan-edge and --texel-size (default 0.1) hold for it");
-  for (const char* other : {"--scan", "--noise", "--density", "--sizes", "--variety", "--plan",
-                            "--slopes", "--texture"})
+  for (const char* other :
+       {"--scan", "--noise", "--sizes", "--variety", "--plan", "--slopes", "--texture"})
     scene->excludes(app.get_option(other));
   app.add_option(
          "--layout", a.layout,
-         "of a scene's files: obj, as ContextCapture writes them (default), odm, or 3dtiles")
+         "of a scene's files: obj, as ContextCapture writes them (default), odm, 3dtiles, or las, "
+         "an airborne cloud of --density points per m2 (default 10) with classes")
       ->needs(scene)
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, SynthLayout>{{"obj", SynthLayout::kObj},
                                              {"odm", SynthLayout::kOdm},
-                                             {"3dtiles", SynthLayout::k3dTiles}}));
+                                             {"3dtiles", SynthLayout::k3dTiles},
+                                             {"las", SynthLayout::kLas}}));
 }
 
-int synth_scene(const SynthArguments& a, bool has_buildings, bool has_texel) {
+int synth_scene(const SynthArguments& a, bool has_buildings, bool has_texel, bool has_density) {
   limit_threads(a.threads);
   SynthSceneOptions options;
   options.seed = a.options.seed, options.edge = a.options.scan_edge;
   if (has_buildings) options.buildings = a.options.buildings;
   if (has_texel) options.texel = a.texel;
+  if (has_density) options.density = a.options.density;
   write_synth_scene(options, a.layout, a.out);
   return 0;
 }
@@ -152,8 +155,9 @@ Run add_synth(CLI::App& app) {
       ->check(number_between(0.02, 20.0));
   app.add_option("--noise", a->options.noise, "sigma of the scan's noise [m], default 0.025")
       ->check(number_between(0.0, 1.0));
-  app.add_option("--density", a->options.density, "samples of the scan per m2, default 40")
-      ->check(number_between(1.0, 1000.0));
+  const CLI::Option* density =
+      app.add_option("--density", a->options.density, "samples of the scan per m2, default 40")
+          ->check(number_between(1.0, 1000.0));
   app.add_option("--sizes", a->options.sizes,
                  "alike: as builders make them; mixed: every kind from tiny to huge, so that no "
                  "size tells a kind")
@@ -176,8 +180,9 @@ Run add_synth(CLI::App& app) {
   app.add_option("--threads", a->threads, "threads to use, 0 = all cores")
       ->check(number_between(0, 4096));
   add_scene_options(app, *a);
-  return [a, scan, buildings, texel] {
-    if (a->is_scene) return synth_scene(*a, buildings->count() > 0, texel->count() > 0);
+  return [a, scan, buildings, texel, density] {
+    if (a->is_scene)
+      return synth_scene(*a, buildings->count() > 0, texel->count() > 0, density->count() > 0);
     a->options.is_drone = a->scan == "drone";
     a->options.is_scan = scan->count() > 0 && !a->options.is_drone;
     return synth(*a);

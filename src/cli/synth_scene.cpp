@@ -76,28 +76,66 @@ class OdmWriter {
   int tiles_ = 0;
 };
 
+/// One LAS that grows tile by tile, under another name until it is whole.
+class LasWriter {
+ public:
+  explicit LasWriter(const std::string& out) : path_(out + "/scene.las") {
+    make_folder(out);
+    las_.open(path_ + ".part", std::ios::binary);
+    las_ << las_header(0, {});
+  }
+
+  void add(const std::vector<SynthPoint>& points) {
+    las_ << las_points(points);
+    for (const SynthPoint& p : points) box_.extend(p.at);
+    count_ += points.size();
+  }
+
+  void finish() {
+    las_.seekp(0);
+    las_ << las_header(count_, box_);
+    las_.close();
+    std::error_code error;
+    if (las_) std::filesystem::rename(path_ + ".part", path_, error);
+    if (!las_ || error) throw Error(Stage::kOutput, path_, "cannot be written");
+  }
+
+ private:
+  std::string path_;
+  std::ofstream las_;
+  Box box_;
+  std::size_t count_ = 0;
+};
+
 /// A few tiles at a time, in order.
 std::vector<TileNote> write_tiles(const SynthScene& scene, SynthLayout layout,
                                   const std::string& out, const std::string& truth) {
   std::unique_ptr<OdmWriter> odm;
+  std::unique_ptr<LasWriter> las;
   if (layout == SynthLayout::kOdm) odm = std::make_unique<OdmWriter>(out);
+  if (layout == SynthLayout::kLas) las = std::make_unique<LasWriter>(out);
   const std::size_t all = scene.tile_count(), batch = thread_count();
   std::vector<TileNote> notes;
   for (std::size_t first = 0; first < all; first += batch) {
     std::vector<SynthTile> tiles(std::min(batch, all - first));
+    std::vector<std::vector<SynthPoint>> points(tiles.size());
     parallel_for(tiles.size(), [&](std::size_t i) {
       SynthTile& tile = tiles[i] = scene.tile(static_cast<int>(first + i));
       write_truth(tile, truth);
       if (layout == SynthLayout::kObj) write_context_capture(tile, out);
       if (layout == SynthLayout::k3dTiles)
         write_file(out, {"Tiles/" + tile.name + ".b3dm", tile_b3dm(tile)});
+      if (las) points[i] = scene.points(static_cast<int>(first + i));
     });
+    for (const auto& own : points)
+      if (las) las->add(own);
     for (const SynthTile& tile : tiles) {
       if (odm) odm->add(tile);
       notes.push_back(note_of(tile));
     }
   }
   if (odm) odm->finish();
+  if (las) las->finish();
   return notes;
 }
 

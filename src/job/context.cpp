@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "scene/closing.h"
 #include "scene/context_chain.h"
+#include "scene/own_images.h"
 #include "scene/skirts.h"
 
 namespace colod {
@@ -211,10 +212,13 @@ void add_own_chain(const Parted& scene, const Ground& ground, Nodes& nodes) {
     };
     leaves.push_back({scene->tiles.box(i), read, 0});
   }
-  nodes.add_chain(leaves, [scene, show](std::size_t i) {
+  const auto images = std::make_shared<const OwnImages>(kChainImages);
+  nodes.add_chain(leaves, [scene, show, images](std::size_t i) {
     Source lost;
     try {
-      return show(i, *scene->tiles.get(i));
+      Source shown = show(i, *scene->tiles.get(i));
+      if (scene->tiles.is_piece(i)) images->give(shown);
+      return shown;
     } catch (const Error& e) {
       lost.warnings.push_back(e.what());
     }

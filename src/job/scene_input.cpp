@@ -12,6 +12,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "read/airborne.h"
+#include "scene/cloud_surface.h"
 #include "scene/looks_like_scene.h"
 
 namespace colod {
@@ -229,6 +231,36 @@ std::vector<ClassArea> areas_of(const HeightMap& map, const SceneClasses& classe
   return out;
 }
 
+/// The clouds among a scene's files; none: all are meshes. Throws Error{kInput} for some of each.
+std::vector<std::string> clouds_of(const std::string& input, const TileTree& tree) {
+  std::vector<std::string> clouds;
+  std::size_t meshes = 0;
+  for (const TileNode& node : tree.nodes)
+    for (const std::string& file : node.contents)
+      if (is_airborne(file))
+        clouds.push_back(file);
+      else
+        ++meshes;
+  if (!clouds.empty() && meshes > 0)
+    throw Error(Stage::kInput, input,
+                "holds " + std::to_string(clouds.size()) + " clouds and " + std::to_string(meshes) +
+                    " other files: a scene is of one kind");
+  return clouds;
+}
+
+/// The surface of a cloud as the scene's tiles.
+SceneTiles open_cloud(const std::string& input, const std::string& why, CloudSurface surface,
+                      Inputs& out, const Tell& tell) {
+  SceneTiles tiles(input, std::make_shared<const HeightMap>(std::move(surface.map)));
+  out.inventory.warnings = std::move(surface.warnings);
+  std::ostringstream text;
+  text << input << ": taken for a scene, since " << why << ": " << surface.points << " points, "
+       << std::setprecision(2) << surface.density << " a m², read as a surface in cells of "
+       << tiles.surface()->cell << " m, " << size_text(tiles.box());
+  say(tell, Level::kInfo, text.str());
+  return tiles;
+}
+
 /// The tiles, in the scene's frame. Throws Error{kInput} where none can be read.
 SceneTiles open_tiles(const std::string& input, TileTree tree,
                       const std::optional<Georeference>& place, bool is_ecef, int coarser,
@@ -237,16 +269,17 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
       is_ecef ? local_from_ecef(*place) : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
   SceneTiles tiles(std::move(tree), to_scene, coarser, !is_ecef, read);
   if (tiles.count() > 0) return tiles;
-  const std::string first = tiles.failures().empty() ? ""
-                                                     : ": " + tiles.failures()[0].path + ": " +
-                                                           tiles.failures()[0].message;
+  const std::string first =
+      tiles.failures().empty()
+          ? ": they hold no faces; of clouds, LAS and LAZ can be scenes"
+          : ": " + tiles.failures()[0].path + ": " + tiles.failures()[0].message;
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
 /// What tells that a file is a place or a piece of one. It is read the way up that it seems to
 /// stand.
 PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
-  if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true};
+  if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true, ""};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;
   PlaceDoubt found;
@@ -255,7 +288,7 @@ PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
       if (found.is_certain) break;
       if (const PlaceDoubt own = looks_like_scene(s); !own.why.empty()) found = own;
       if (!found.is_certain && s.is_turned_back && !is_axis_said && is_wide(s))
-        found = {"is as wide as a scene and lies on its side (--up auto turns it)", true};
+        found = {"is as wide as a scene and lies on its side (--up auto turns it)", true, ""};
     }
   } catch (const std::exception&) {
     return {};  // whoever reads it for the work tells of it
@@ -263,12 +296,17 @@ PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
   return found;
 }
 
-/// Meshes that are taken for buildings since nothing says that they are scenes: a failure of each
-/// that looks like one, though it is built, and a warning where it may be.
-void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
+/// Of meshes that nothing says of whether they are scenes.
+std::vector<PlaceDoubt> doubts_of(const ReadOptions& read, const Inventory& inventory) {
   std::vector<PlaceDoubt> doubts(inventory.files.size());
   parallel_for(inventory.files.size(),
                [&](std::size_t i) { doubts[i] = doubt(inventory.files[i], read); });
+  return doubts;
+}
+
+/// They are taken for buildings: a failure of each that looks like a scene, though it is built, and
+/// a warning where it may be.
+void tell_doubts(const std::vector<PlaceDoubt>& doubts, Inventory& inventory) {
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     const std::string& path = inventory.files[i].path;
     const std::string text = doubts[i].why +
@@ -281,22 +319,58 @@ void doubt_buildings(const ReadOptions& read, Inventory& inventory) {
   }
 }
 
-Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
-                  const SceneChoice& choice, const SceneOutput& options, const Tell& tell) {
-  TileTree tree = list_tiles(input, read);
-  bool is_ecef = false;
-  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
-  SceneTiles tiles = open_tiles(input, std::move(tree), place, is_ecef, choice.source_level, read);
-  Inputs out;
+/// Why the one file that is named is a scene; empty: it is none, or there are several.
+std::string whole_place(const std::vector<std::string>& inputs,
+                        const std::vector<PlaceDoubt>& doubts) {
+  const bool is_one_file =
+      inputs.size() == 1 && doubts.size() == 1 && std::filesystem::is_regular_file(inputs[0]);
+  return is_one_file ? doubts[0].place : "";
+}
+
+/// The meshes of a scene as its tiles.
+SceneTiles open_meshes(const std::string& input, const std::string& why, SceneTiles tiles,
+                       Inputs& out, const Tell& tell) {
   out.inventory.failures = tiles.failures();
   out.inventory.warnings = tiles.warnings();
   say(tell, Level::kInfo,
       input + ": taken for a scene, since " + why + ": " + std::to_string(tiles.count()) +
           " tiles, " + std::to_string(tiles.faces()) + " faces, " + size_text(tiles.box()));
+  return tiles;
+}
+
+/// The surface of the one cloud that is named, where it shows several buildings; `why` says so.
+std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
+                                        const ReadOptions& read, std::string& why) {
+  if (inputs.size() != 1 || !is_airborne(inputs[0])) return {};
+  try {
+    CloudSurface surface = surface_of(inputs, read);
+    why = looks_like_scene(surface.map).place;
+    if (!why.empty()) return surface;
+  } catch (const std::exception&) {
+    return {};  // whoever reads it for the work tells of it
+  }
+  return {};
+}
+
+/// `cloud`: that is known already.
+Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
+                  const SceneChoice& choice, const SceneOutput& options, const Tell& tell,
+                  std::optional<CloudSurface> cloud = {}) {
+  TileTree tree = list_tiles(input, read);
+  bool is_ecef = false;
+  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
+  Inputs out;
+  const std::vector<std::string> clouds = clouds_of(input, tree);
+  if (!clouds.empty() && !cloud) cloud = surface_of(clouds, read);
+  SceneTiles tiles = cloud ? open_cloud(input, why, std::move(*cloud), out, tell)
+                           : open_meshes(input, why,
+                                         open_tiles(input, std::move(tree), place, is_ecef,
+                                                    choice.source_level, read),
+                                         out, tell);
   HeightMap map;
   SceneClasses classes;
   if (choice.footprints.empty() || choice.context != ContextMode::kNone) {
-    map = survey(tiles, kSurveyImages);
+    map = tiles.surface() ? *tiles.surface() : survey(tiles, kSurveyImages);
     classes = classify(map);
     out.classes = areas_of(map, classes);
   }
@@ -320,13 +394,23 @@ Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& re
                    const SceneChoice& choice, const SceneOutput& output, const Tell& tell) {
   if (const std::string why = reason_to_part(inputs, choice); !why.empty())
     return open_scene(inputs[0], why, read, choice, output, tell);
+  if (choice.mode == SceneMode::kAuto) {
+    std::string why;
+    if (auto cloud = whole_cloud(inputs, read, why))
+      return open_scene(inputs[0], why, read, choice, output, tell, std::move(cloud));
+  }
+  Inputs out;
+  out.inventory = take_inventory(inputs, read);
+  if (choice.mode == SceneMode::kAuto) {
+    const std::vector<PlaceDoubt> doubts = doubts_of(read, out.inventory);
+    if (const std::string why = whole_place(inputs, doubts); !why.empty())
+      return open_scene(inputs[0], why, read, choice, output, tell);
+    tell_doubts(doubts, out.inventory);
+  }
   if (!choice.footprints.empty())
     throw Error(Stage::kUsage, "--footprints",
                 "is for scenes, and these inputs are files of single buildings; --scene scene "
                 "takes one for a scene");
-  Inputs out;
-  out.inventory = take_inventory(inputs, read);
-  if (choice.mode == SceneMode::kAuto) doubt_buildings(read, out.inventory);
   out.read = [files = out.inventory.files, read](std::size_t file) {
     return read_file(files[file], read);
   };

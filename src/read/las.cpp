@@ -5,7 +5,10 @@
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 
+#include "airborne.h"
 #include "core/program.h"
 #include "files.h"
 #include "formats.h"
@@ -181,12 +184,10 @@ RawFile read_las(const std::string& path, std::string_view bytes) {
   return raw;
 }
 
-RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options) {
-  const LasHeader h = read_las_header(path, bytes);
-  if (!h.is_packed) return read_las(path, bytes);
-  constexpr double kMebi = 1 << 20;
-  if (static_cast<double>(h.count) * static_cast<double>(h.length) > options.input_memory * kMebi)
-    fail(path, "LAZ: it unpacks to more than --input-memory allows");
+namespace {
+
+/// Unpacks a file into a folder; the path of what came out.
+std::string unpack_laz(const std::string& path, const Workplace& place) {
   std::string program;
   bool is_pdal = false;
   for (const char* name : {"laszip", "laszip64", "las2las", "las2las64", "pdal"}) {
@@ -198,14 +199,99 @@ RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOpti
     fail(path,
          "LAZ is read where laszip, las2las or pdal is on the PATH, and none is: `pdal "
          "translate IN.laz OUT.las` converts it elsewhere");
-  const Workplace place;
   const std::string out = place / "out.las", in = std::filesystem::absolute(path).string();
   const int code = is_pdal ? run_program({program, "translate", in, out})
                            : run_program({program, "-i", in, "-o", out});
   std::error_code error;
   if (code != 0 || !std::filesystem::is_regular_file(out, error))
     fail(path, "LAZ: " + program + " could not unpack it (exit code " + std::to_string(code) + ")");
-  return read_las(path, read_bytes(out, options.input_memory));
+  return out;
+}
+
+}  // namespace
+
+RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options) {
+  const LasHeader h = read_las_header(path, bytes);
+  if (!h.is_packed) return read_las(path, bytes);
+  constexpr double kMebi = 1 << 20;
+  if (static_cast<double>(h.count) * static_cast<double>(h.length) > options.input_memory * kMebi)
+    fail(path, "LAZ: it unpacks to more than --input-memory allows");
+  const Workplace place;
+  return read_las(path, read_bytes(unpack_laz(path, place), options.input_memory));
 }
 
 }  // namespace colod::mesh_io
+
+namespace colod {
+
+namespace fs = std::filesystem;
+
+struct AirborneCloud::Impl {
+  std::optional<Workplace> place;  // where a LAZ was unpacked
+  std::string file;                // that is read
+  mesh_io::LasHeader header;
+  double unit = 1;
+};
+
+AirborneCloud::AirborneCloud(const std::string& path, const ReadOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& own = *impl_;
+  own.unit = options.unit.value_or(1);
+  own.file = path;
+  const auto head_of = [&] {
+    std::string head(mesh_io::kNewHeader, '\0');
+    std::ifstream in(own.file, std::ios::binary);
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    return head;
+  };
+  own.header = mesh_io::read_las_header(path, head_of());
+  if (own.header.is_packed) {
+    own.place.emplace();
+    own.file = mesh_io::unpack_laz(path, *own.place);
+    own.header = mesh_io::read_las_header(path, head_of());
+  }
+  mesh_io::check_length(path, own.header, fs::file_size(own.file));
+}
+
+AirborneCloud::~AirborneCloud() = default;
+AirborneCloud::AirborneCloud(AirborneCloud&&) noexcept = default;
+
+bool AirborneCloud::has_color() const {
+  return mesh_io::kFormats[static_cast<std::size_t>(impl_->header.format)].color > 0;
+}
+
+void AirborneCloud::visit(const std::function<void(const AirbornePoint&)>& take) const {
+  using mesh_io::value_at;
+  constexpr std::uint64_t kBlock = 1 << 15;  // points that are in memory
+  const mesh_io::LasHeader& h = impl_->header;
+  const std::size_t color_at = mesh_io::kFormats[static_cast<std::size_t>(h.format)].color;
+  std::ifstream in(impl_->file, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(h.begin));
+  std::string block;
+  for (std::uint64_t done = 0; done < h.count; done += kBlock) {
+    block.resize(static_cast<std::size_t>(std::min(kBlock, h.count - done)) * h.length);
+    in.read(block.data(), static_cast<std::streamsize>(block.size()));
+    if (!in) mesh_io::fail(impl_->file, "LAS: cannot be read to its end");
+    for (std::size_t at = 0; at < block.size(); at += h.length) {
+      const std::string_view point(block.data() + at, h.length);
+      const mesh_io::PointClass c = mesh_io::class_of(point.data(), h.format);
+      if (c.is_withheld || c.number == 7 || c.number == 18) continue;  // noise, low and high
+      AirbornePoint p{Vec3::Zero(), c.number, {}};
+      for (int k = 0; k < 3; ++k)
+        p.at[k] = impl_->unit *
+                  (value_at<std::int32_t>(point, 4 * static_cast<std::size_t>(k)) * h.scale[k] +
+                   h.offset[k]);
+      for (std::size_t k = 0; color_at > 0 && k < 3; ++k)
+        p.color[k] = value_at<std::uint16_t>(point, color_at + 2 * k);
+      take(p);
+    }
+  }
+}
+
+bool is_airborne(const std::string& path) {
+  const std::string e = mesh_io::lower(fs::path(path).extension().string());
+  return e == ".las" || e == ".laz";
+}
+
+}  // namespace colod

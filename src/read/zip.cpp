@@ -41,8 +41,21 @@ struct ZipEntry {
 
 std::string in_mib(std::uint64_t bytes) { return std::to_string(bytes / kMebibyte) + " MiB"; }
 
+/// Whether all that a file holds is the end of an archive's list of no entries, which minizip takes
+/// for none, with or without a comment.
+bool is_empty_archive(const std::string& path) {
+  constexpr std::size_t kEnd = 22;
+  std::string end(kEnd, '\0');
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(end.data(), kEnd) || !end.starts_with("PK\5\6")) return false;
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(end[at]); };
+  return std::all_of(end.begin() + 4, end.end() - 2, [](char c) { return c == 0; }) &&
+         fs::file_size(path) == kEnd + byte(20) + 256u * byte(21);
+}
+
 Zip open_zip(const std::string& path) {
   Zip zip(unzOpen64(path.c_str()));
+  if (!zip && is_empty_archive(path)) fail(path, "is an empty archive: it holds no entries");
   if (!zip)
     fail(path, "is no ZIP archive, or is cut: its list of entries, which stands last, is missing");
   return zip;

@@ -37,14 +37,14 @@ struct Side {
   double at(const Vec2& p) const { return along.dot(p - from); }
 };
 
-using Line = std::array<Vec2, 2>;
+using PlanLine = std::array<Vec2, 2>;
 
 /// Those of the hull that are nearly as long as it is, each once.
 std::vector<Side> long_sides(const std::vector<Vec2>& hull, double in_plane) {
-  std::vector<Line> lines;
+  std::vector<PlanLine> lines;
   for (std::size_t i = 0; i < hull.size(); ++i)
     lines.push_back({hull[i], hull[(i + 1) % hull.size()]});
-  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
+  std::stable_sort(lines.begin(), lines.end(), [](const PlanLine& a, const PlanLine& b) {
     return (a[1] - a[0]).squaredNorm() > (b[1] - b[0]).squaredNorm();
   });
   std::vector<Side> sides;

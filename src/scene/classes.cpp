@@ -94,10 +94,44 @@ std::vector<float> plantness(const HeightMap& map, const std::vector<float>& gro
   return WindowMean(map, static_cast<int>(std::lround(kCalm / map.cell / 2)))(out);
 }
 
+/// What a source tells is as sure as can be; where it tells buildings, nothing else is one.
+void believe(const HeightMap& map, std::vector<float>& plant) {
+  const bool has_buildings =
+      std::find(map.told.begin(), map.told.end(), SceneClass::kBuilding) != map.told.end();
+  for (std::size_t i = 0; i < map.told.size(); ++i) {
+    if (map.told[i] == SceneClass::kBuilding)
+      plant[i] = 0;
+    else if (has_buildings || map.told[i] == SceneClass::kPlant)
+      plant[i] = 1;
+  }
+}
+
+/// Of what stands and is no building.
+SceneClass class_beside(const HeightMap& map, const std::vector<float>& plant, std::size_t i) {
+  if (!map.told.empty() && map.told[i] == SceneClass::kRest) return SceneClass::kRest;
+  return plant[i] >= kRoof ? SceneClass::kPlant : SceneClass::kRest;
+}
+
+/// How much higher the second of two neighbours is; of a sharp map, than the slopes on both sides
+/// of them make it: steep roofs have no steps.
+double rise(const HeightMap& map, std::size_t i, std::size_t j) {
+  const double step = map.top[j] - map.top[i];
+  if (!map.is_sharp) return step;
+  const auto w = static_cast<std::size_t>(map.width);
+  const bool is_row = i / w == j / w;
+  double slope = 0;
+  for (const auto& [from, to] : {std::pair{i, j}, {j, i}}) {
+    const std::size_t beyond = 2 * from - to;  // huge where there is none
+    if (beyond >= map.size() || (is_row && beyond / w != from / w)) continue;
+    if (const double s = std::abs(map.top[from] - map.top[beyond]); s > slope) slope = s;
+  }
+  return std::copysign(std::max(0.0, std::abs(step) - slope), step);
+}
+
 /// Whether a cell lies well below one beside it: part of a melted wall.
 bool is_on_wall(const HeightMap& map, std::size_t i) {
   bool is_low = false;
-  for_each_neighbour(map, i, [&](std::size_t j) { is_low |= map.top[j] - map.top[i] > kWallStep; });
+  for_each_neighbour(map, i, [&](std::size_t j) { is_low |= rise(map, i, j) > kWallStep; });
   return is_low;
 }
 
@@ -121,7 +155,7 @@ Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, double 
       open.pop_back();
       ++out.cells.back();
       for_each_neighbour(map, i, [&](std::size_t j) {
-        if (is_in[j] && out.of_cell[j] < 0 && std::abs(map.top[i] - map.top[j]) < step)
+        if (is_in[j] && out.of_cell[j] < 0 && std::abs(rise(map, i, j)) < step)
           out.of_cell[j] = number, open.push_back(j);
       });
     }
@@ -273,7 +307,8 @@ void take_clutter(const HeightMap& map, const std::vector<char>& stands,
 SceneClasses classify(const HeightMap& map) {
   SceneClasses out;
   out.ground = find_terrain(map);
-  const std::vector<float> plant = plantness(map, out.ground);
+  std::vector<float> plant = plantness(map, out.ground);
+  believe(map, plant);
   std::vector<char> stands(map.size(), 0), is_open = stands, is_roof = stands;
   for (std::size_t i = 0; i < map.size(); ++i) {
     stands[i] = map.top[i] - out.ground[i] > kLow;
@@ -281,6 +316,8 @@ SceneClasses classify(const HeightMap& map) {
     is_roof[i] = is_open[i] && !is_on_wall(map, i);
   }
   is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
+  for (std::size_t i = 0; i < map.told.size(); ++i)
+    if (map.told[i] == SceneClass::kBuilding) is_roof[i] = is_open[i];
   Regions regions = regions_of(map, is_roof, kStep);
   take_rims(map, is_open, regions);
   join_small(map, regions);
@@ -295,13 +332,12 @@ SceneClasses classify(const HeightMap& map) {
     if (const int r = regions.of_cell[i]; r >= 0)
       out.building[i] = number[static_cast<std::size_t>(r)];
   take_walls(map, out.ground, is_open, out.building);
-  take_clutter(map, stands, out.building);
+  if (map.told.empty()) take_clutter(map, stands, out.building);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (std::isnan(map.top[i])) continue;
     out.of_cell[i] = out.building[i] >= 0 ? SceneClass::kBuilding
                      : !stands[i]         ? SceneClass::kGround
-                     : plant[i] >= kRoof  ? SceneClass::kPlant
-                                          : SceneClass::kRest;
+                                          : class_beside(map, plant, i);
   }
   return out;
 }

@@ -1,15 +1,12 @@
 // A height map → ground, buildings, plants and the rest.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "place/footprints.h"
 #include "survey.h"
 
 namespace colod {
-
-enum class SceneClass : std::uint8_t { kNothing, kGround, kBuilding, kPlant, kRest };
 
 struct SceneClasses {
   std::vector<SceneClass> of_cell;  ///< as long as the map
@@ -19,8 +16,9 @@ struct SceneClasses {
 };
 
 /// By height over the ground, by how well the surface fits a plane about each cell, and by how
-/// green it is where there are colours. Blocks are parted where roofs lie at different heights.
-/// O(cells · log cells). Deterministic.
+/// green it is where there are colours; where the map's source tells ground, buildings or plants,
+/// it is believed. Blocks are parted where roofs lie at different heights. O(cells · log cells).
+/// Deterministic.
 SceneClasses classify(const HeightMap& map);
 
 /// The plan of each building: its cells' border, straightened along the building's own directions.

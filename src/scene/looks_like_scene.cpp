@@ -163,18 +163,22 @@ bool is_cut_through(const PlaceFromAbove& plan) {
          std::any_of(plan.groups.begin(), plan.groups.end(), is_cut_off);
 }
 
-std::string reason(const PlaceFromAbove& plan) {
+PlaceDoubt doubt_of(const PlaceFromAbove& plan) {
   const auto houses = std::count_if(plan.groups.begin(), plan.groups.end(),
                                     [](const Group& g) { return g.area >= kLeastHouse; });
-  if (plan.ground >= kLeastGround && houses >= (plan.is_tile ? kLeastHousesOfTile : kLeastHouses))
-    return "looks like a scene: " + std::to_string(houses) +
-           " buildings stand apart on terrain that takes " + percent(plan.ground) + " of its plan";
+  if (plan.ground >= kLeastGround && houses >= (plan.is_tile ? kLeastHousesOfTile : kLeastHouses)) {
+    const std::string place = std::to_string(houses) +
+                              " buildings stand apart on terrain that takes " +
+                              percent(plan.ground) + " of its plan";
+    return {"looks like a scene: " + place, true, place};
+  }
   if (is_bare(plan, houses))
-    return "looks like a piece of terrain: it takes " + percent(plan.ground) +
-           " of its plan, buildings " + percent(plan.built);
+    return {"looks like a piece of terrain: it takes " + percent(plan.ground) +
+                " of its plan, buildings " + percent(plan.built),
+            true, ""};
   if (is_cut_through(plan))
-    return "looks like a piece of a scene: its border cuts through buildings";
-  return "";
+    return {"looks like a piece of a scene: its border cuts through buildings", true, ""};
+  return {};
 }
 
 }  // namespace
@@ -191,12 +195,26 @@ PlaceDoubt looks_like_scene(const Source& source) {
   const bool ends_as_cut = plan.rim.at_top >= kMostAtTop;
   plan.is_tile = straight >= kStraightSides && ends_as_cut;
   plan.side = side;
-  if (const std::string why = reason(plan); side >= kLeastTile && !why.empty()) return {why, true};
+  if (const PlaceDoubt doubt = doubt_of(plan); side >= kLeastTile && doubt.is_certain) return doubt;
   if (straight > 0 && ends_as_cut && plan.rim.ground >= kGroundAtRim)
     return {"is cut off straight on " + std::to_string(straight) +
                 (straight > 1 ? " sides" : " side") + " of its plan, as tiles of scenes are",
-            false};
+            false, ""};
   return {};
+}
+
+PlaceDoubt looks_like_scene(const HeightMap& map) {
+  const SceneClasses classes = classify(map);
+  PlaceFromAbove plan;
+  const auto count = [&](SceneClass c) {
+    return static_cast<double>(std::count(classes.of_cell.begin(), classes.of_cell.end(), c));
+  };
+  const double cells = static_cast<double>(map.size());
+  plan.ground = count(SceneClass::kGround) / std::max(cells - count(SceneClass::kNothing), 1.0);
+  plan.groups = groups_of(map, classes, std::vector<char>(map.size(), 0));
+  plan.side = map.cell * std::min(map.width, map.height);
+  PlaceDoubt doubt = doubt_of(plan);
+  return plan.side >= kLeastTile && !doubt.place.empty() ? doubt : PlaceDoubt{};
 }
 
 bool is_wide(const Source& source) {

@@ -1,6 +1,7 @@
 // The tiles of a scene → heights and colours on a grid, as seen from straight above.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/geometry.h"
@@ -9,13 +10,21 @@
 
 namespace colod {
 
+enum class SceneClass : std::uint8_t { kNothing, kGround, kBuilding, kPlant, kRest };
+
 /// Row by row from the least y; NaN heights where nothing is.
 struct HeightMap {
-  Vec2 origin = Vec2::Zero();  ///< the corner of the first cell
-  double cell = 0;             ///< metres
-  int width = 0, height = 0;   ///< cells
-  std::vector<float> top;      ///< metres, of the highest surface at the cell's middle
-  std::vector<Rgb> color;      ///< of that surface; empty: nothing has a colour
+  Vec2 origin = Vec2::Zero();    ///< the corner of the first cell
+  double cell = 0;               ///< metres
+  int width = 0, height = 0;     ///< cells
+  std::vector<float> top;        ///< metres, of the highest surface at the cell's middle
+  std::vector<Rgb> color;        ///< of that surface; empty: nothing has a colour
+  std::vector<SceneClass> told;  ///< what its source says that a cell shows, kNothing: nothing of
+                                 ///< it; empty: it says nothing at all
+  std::vector<float> ground;     ///< metres, where its source knows the ground, NaN: it does not;
+                                 ///< empty: nowhere
+  bool is_sharp = false;         ///< walls are steps from cell to cell, as of points; a measured
+                                 ///< mesh melts them
 
   std::size_t size() const { return top.size(); }
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }

@@ -241,6 +241,11 @@ void tilt(std::vector<float>& z, int width, const Vec3& plane, double times) {
 }  // namespace
 
 std::vector<float> find_terrain(const HeightMap& map) {
+  if (!map.ground.empty()) {
+    Grid told(map.width, map.height);
+    told.z = map.ground;
+    return filled(std::move(told)).z;
+  }
   std::vector<Grid> least = {calmed(map)};
   const Vec3 lean = lean_of(least[0], map.cell);
   tilt(least[0].z, map.width, lean, -1);

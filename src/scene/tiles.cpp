@@ -7,8 +7,11 @@
 #include <map>
 #include <mutex>
 
+#include "cloud_surface.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "parameters.h"
+#include "pieces.h"
 
 namespace colod {
 
@@ -70,14 +73,18 @@ struct SceneTiles::Impl {
     int node;
     std::string content;
     Box box;
+    long piece = -1;  // of `pieces`; −1: the whole content
   };
   struct Kept {
     std::shared_ptr<const Source> source;
     std::list<std::size_t>::iterator place;
   };
   TileTree tree;
-  Matrix to_scene;
+  std::shared_ptr<const HeightMap> surface;
+  Matrix to_scene = Matrix::Identity();
   ReadOptions options;
+  Matrix turn = Matrix::Identity();  // of pieces, which were cut before it was known
+  std::unique_ptr<Pieces> pieces;    // null: no tile is too large
   std::vector<Tile> tiles;
   std::vector<int> finest;
   Box box;
@@ -93,9 +100,18 @@ struct SceneTiles::Impl {
   void set_upright(std::vector<Facts>& facts, bool may_turn);
   Source read(std::size_t i) const {
     const Tile& tile = tiles[i];
+    if (surface) return surface_tile(*surface, tile.node - 1);
+    if (tile.piece >= 0) return read_piece(static_cast<std::size_t>(tile.piece));
     return read_tile(tree.nodes[static_cast<std::size_t>(tile.node)], tile.content, to_scene,
                      options);
   }
+  Source read_piece(std::size_t piece) const {
+    Source source = pieces->get(piece);
+    if (!turn.isIdentity(0))
+      for (Vec3& p : source.mesh.vertices) p = (turn * p.homogeneous()).head<3>();
+    return source;
+  }
+  std::vector<Tile> cut(const Tile& tile, const Source& source);
   std::shared_ptr<const Source> find(std::size_t i) const;
   void keep(std::size_t i, const std::shared_ptr<const Source>& source) const;
 };
@@ -105,13 +121,17 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
   for (const int node : finest)
     for (const std::string& content : tree.nodes[static_cast<std::size_t>(node)].contents)
       tiles.push_back({node, content, {}});
+  if (!tree.is_tileset && !surface) pieces = std::make_unique<Pieces>();
   std::vector<Facts> facts(tiles.size());
+  std::vector<std::vector<Tile>> parts(tiles.size());
   std::vector<std::vector<std::string>> said(tiles.size());
   parallel_for(tiles.size(), [&](std::size_t i) {
     try {
       const Source source = read(i);
       facts[i] = facts_of(source);
       said[i] = source.warnings;
+      if (pieces && facts[i].faces > parameters::context::kMostFaces)
+        parts[i] = cut(tiles[i], source);
     } catch (const Error& e) {
       facts[i].problem = std::string(e.what()).substr(e.item.size() + 2);
     } catch (const std::exception& e) {  // a library gave up: this tile's problem only
@@ -132,13 +152,25 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
     tiles[i].box = facts[i].box;
     box.extend(facts[i].box);
     faces += facts[i].faces;
-    good.push_back(std::move(tiles[i]));
+    for (Tile& part : parts[i]) {
+      part.box = turned(part.box, turn);
+      good.push_back(std::move(part));
+    }
+    if (parts[i].empty()) good.push_back(std::move(tiles[i]));
   }
   tiles = std::move(good);
   for (const auto& [text, where] : by_text)
     warnings.push_back(
         shown(tree, where.second + ": " + text) +
         (where.first > 1 ? " (and " + std::to_string(where.first - 1) + " more tiles)" : ""));
+}
+
+/// What no client draws at once becomes several tiles, whose borders are alike.
+std::vector<SceneTiles::Impl::Tile> SceneTiles::Impl::cut(const Tile& tile, const Source& source) {
+  std::vector<Tile> out;
+  for (const std::size_t piece : pieces->cut(source, parameters::context::kMostFaces))
+    out.push_back({tile.node, tile.content, pieces->box(piece), static_cast<long>(piece)});
+  return out;
 }
 
 void SceneTiles::Impl::set_upright(std::vector<Facts>& facts, bool may_turn) {
@@ -155,7 +187,7 @@ void SceneTiles::Impl::set_upright(std::vector<Facts>& facts, bool may_turn) {
                        "its transform may be wrong");
   if (!may_turn || (is_told ? !is_other : !is_aside)) return;
   const bool is_y_up = is_told ? !tree.is_tileset : facing.y() > 0;
-  const Matrix turn = upright(is_y_up);
+  turn = upright(is_y_up);
   to_scene = turn * to_scene;
   for (Facts& f : facts) f.box = turned(f.box, turn);
   if (!is_told)
@@ -197,6 +229,22 @@ SceneTiles::SceneTiles(TileTree tree, const Matrix& to_scene, int coarser, bool 
   impl_->look_through(coarser, may_turn);
 }
 
+SceneTiles::SceneTiles(const std::string& path, std::shared_ptr<const HeightMap> surface)
+    : impl_(std::make_unique<Impl>()) {
+  TileTree& tree = impl_->tree;
+  tree.path = path;
+  tree.nodes.emplace_back();
+  tree.nodes[0].is_added = true;
+  for (int i = 0; i < tile_count(*surface); ++i) {
+    tree.nodes[0].children.push_back(i + 1);
+    TileNode& node = tree.nodes.emplace_back();
+    node.contents = {path};
+    node.parent = 0;
+  }
+  impl_->surface = std::move(surface);
+  impl_->look_through(0, false);
+}
+
 SceneTiles::~SceneTiles() = default;
 SceneTiles::SceneTiles(SceneTiles&&) noexcept = default;
 
@@ -209,6 +257,9 @@ const Matrix& SceneTiles::to_scene() const { return impl_->to_scene; }
 std::size_t SceneTiles::faces() const { return impl_->faces; }
 const std::vector<ReadFailure>& SceneTiles::failures() const { return impl_->failures; }
 const std::vector<std::string>& SceneTiles::warnings() const { return impl_->warnings; }
+
+bool SceneTiles::is_piece(std::size_t tile) const { return impl_->tiles[tile].piece >= 0; }
+const std::shared_ptr<const HeightMap>& SceneTiles::surface() const { return impl_->surface; }
 
 std::shared_ptr<const Source> SceneTiles::get(std::size_t tile) const {
   if (auto kept = impl_->find(tile)) return kept;

@@ -11,6 +11,8 @@
 
 namespace colod {
 
+struct HeightMap;
+
 class SceneTiles {
  public:
   /// Reads each of the finest tiles once, to learn where it lies and whether it can be read.
@@ -19,6 +21,8 @@ class SceneTiles {
   /// that was seen from above is far more than what faces any other way.
   SceneTiles(TileTree tree, const Eigen::Matrix4d& to_scene, int coarser, bool may_turn,
              const ReadOptions& options);
+  /// The squares of a map that was made of a cloud, `path`.
+  SceneTiles(const std::string& path, std::shared_ptr<const HeightMap> surface);
   ~SceneTiles();
   SceneTiles(SceneTiles&&) noexcept;
 
@@ -38,6 +42,10 @@ class SceneTiles {
   std::size_t faces() const;
   const std::vector<ReadFailure>& failures() const;  ///< of the tree, and of tiles
   const std::vector<std::string>& warnings() const;
+  /// Whether it is a part of a mesh that was too large for one tile.
+  bool is_piece(std::size_t tile) const;
+  /// Null where tiles are meshes.
+  const std::shared_ptr<const HeightMap>& surface() const;
 
  private:
   struct Impl;

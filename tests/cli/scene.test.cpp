@@ -353,23 +353,47 @@ TEST_CASE("of a scene its ground alone, in the same bytes with one thread and wi
   CHECK(files[0] == files[1]);
 }
 
-TEST_CASE("a place that is given as one mesh is told of, and built as one building all the same") {
-  const TempFolder folder;
-  std::vector<Box> houses = kRow;
-  houses.push_back({{45, 14, 0}, {55, 24, 6}});
-  houses.push_back({{45, 45, 0}, {55, 55, 7}});
-  const bool is_place = GENERATE(true, false);
-  Mesh place = terrain_with_boxes(70, 1, is_place ? houses : kRow);
-  for (Vec3& p : place.vertices)  // as what was measured: nothing quite level or upright
+namespace {
+
+/// As what was measured: nothing quite level or upright.
+Mesh measured_place(const std::vector<Box>& houses) {
+  Mesh place = terrain_with_boxes(70, 1, houses);
+  for (Vec3& p : place.vertices)
     p += Vec3(0.01 * p.z(), 0.013 * p.z(), 0.02 * p.x() + 0.1 * std::sin(p.y() / 5));
+  return place;
+}
+
+std::vector<Box> row_and_two() { return houses; }
+
+}  // namespace
+
+TEST_CASE("a place that is given as one mesh is taken apart, and one house on its plot is not") {
+  const TempFolder folder;
+  const bool is_place = GENERATE(true, false);
+  const Mesh place = measured_place(is_place ? row_and_two() : kRow);
   const std::string mesh = folder.write("place.obj", obj_text(place));
   const Run run = build(folder, mesh);
   INFO(run.log);
-  CHECK((run.log.find("looks like a scene: 3 buildings") != std::string::npos) == is_place);
-  CHECK((run.code == 1) == is_place);
+  CHECK((run.log.find("taken for a scene, since 3 buildings stand apart") != std::string::npos) ==
+        is_place);
+  CHECK(run.code == 0);
+  CHECK(report(folder)["buildings"].size() == (is_place ? 4 : 1));  // the row has two heights
+  CHECK((context_tiles(folder) > 0) == is_place);
   const Run told = build(folder, mesh + " --scene buildings");
   INFO(told.log);
-  CHECK(told.log.find("looks like a scene") == std::string::npos);
+  CHECK(told.log.find("scene, since") == std::string::npos);
+  CHECK(report(folder)["buildings"].size() == 1);
+}
+
+TEST_CASE("of several meshes one that is a place is told of, and built as one building") {
+  const TempFolder folder;
+  const std::string mesh = folder.write("place.obj", obj_text(measured_place(row_and_two())));
+  const std::string house = folder.write("house.obj", obj_text(gable_house(12, 8, 6, 3)));
+  const Run run = build(folder, mesh + " " + house);
+  INFO(run.log);
+  CHECK(run.code == 1);
+  CHECK_THAT(run.log, Contains("looks like a scene: 3 buildings"));
+  CHECK(report(folder)["buildings"].size() == 2);
 }
 
 TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain without a building") {
@@ -379,9 +403,7 @@ TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain wit
   std::vector<Box> houses = {{{-5, 20, 0}, {12, 34, 6}}, {{40, 30, 0}, {52, 44, 7}}};
   houses.erase(kind == "cut" ? houses.begin() + 1 : houses.begin());
   if (kind == "bare" || kind == "on its side") houses.clear();
-  Mesh place = terrain_with_boxes(70, 1, houses);
-  for (Vec3& p : place.vertices)  // as what was measured: nothing quite level or upright
-    p += Vec3(0.01 * p.z(), 0.013 * p.z(), 0.02 * p.x() + 0.1 * std::sin(p.y() / 5));
+  const Mesh place = measured_place(houses);
   std::string mesh, says = "its border cuts through buildings";
   if (kind == "bare" || kind == "on its side") says = "looks like a piece of terrain";
   if (kind == "b3dm") {

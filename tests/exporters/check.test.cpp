@@ -68,6 +68,22 @@ class Tileset {
   fs::path folder_;
 };
 
+/// A place of one tile: a face of colours at 0, and one for each image, ten metres farther each.
+ContextTiles place_with(int images) {
+  ContextMesh all;
+  for (int i = -1; i < images; ++i) {
+    const int v = 3 * (i + 1);
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)})
+      all.mesh.vertices.push_back(corner + 10 * (i + 1) * Vec3::UnitX());
+    all.mesh.faces.push_back({v, v + 1, v + 2});
+    all.face_image.push_back(i);
+    all.uvs.push_back({Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)});
+    all.colors.push_back({Rgb{}, Rgb{}, Rgb{}});
+    if (i >= 0) all.images.push_back({"image " + std::to_string(i), ImageFormat::kJpeg});
+  }
+  return {{{}}, [all](std::size_t) { return all; }};
+}
+
 /// The names of a property table with 5 rows.
 std::vector<std::string> split_names(const Glb& glb, std::size_t values, std::size_t offsets) {
   std::vector<std::string> out;
@@ -163,6 +179,27 @@ TEST_CASE("faults of boxes and trees") {
     tileset.write("tileset.json", "{");
     tileset.json = "x";
     CHECK(tileset.codes() == Codes{"json"});
+  }
+}
+
+TEST_CASE("a tile is as large as all its primitives, each of which is looked at") {
+  for (const int images : {0, 1, 3}) {
+    const ContextTiles place = place_with(images);
+    for (const Compression c : {Compression::kNone, Compression::kDraco}) {
+      Tileset tileset;
+      for (const Encoded& file :
+           encode_tileset(street(3), {.compression = c, .switching = kScene, .context = &place})) {
+        tileset.write(file.path, file.bytes);
+        if (file.path == "tileset.json") tileset.json = Json::parse(file.bytes);
+      }
+      INFO(images << " images");
+      CHECK(tileset.codes() == Codes{});
+      const std::string glb = tileset.slurp("tiles/context/0.glb");
+      CHECK(after(glb, [](Json& json, std::string&) {
+              Json& last = json["meshes"][0]["primitives"].back()["attributes"]["POSITION"];
+              json["accessors"][last.get<std::size_t>()]["max"][0] = 99;
+            }) == Codes{"bounds"});
+    }
   }
 }
 

@@ -146,6 +146,12 @@ TEST_CASE("an archive that is cut, empty, a bomb or another one's is refused in 
   refused(whole.substr(0, whole.size() - 30), "is cut");
   refused(whole.substr(0, 100), "is cut");
   refused("no archive", "is no ZIP archive");
+  std::string nothing = std::string("PK\5\6") + std::string(18, '\0');
+  refused(nothing, "is an empty archive");
+  refused(nothing.substr(0, 20), "is cut");
+  nothing[20] = 5;
+  refused(nothing + "words", "is an empty archive");
+  refused(nothing, "is cut");
   refused(whole.substr(whole.size() / 2), "");  // its first half is missing
   std::string many = whole;
   const std::size_t end = many.rfind("PK\5\6");

@@ -1,65 +1,19 @@
 // LAS clouds: versions, point formats, classes, colours, and what is wrong with files.
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <cstring>
+#include <filesystem>
 #include <fstream>
 
+#include "las_files.h"
+#include "read/airborne.h"
 #include "read_helpers.h"
+#include "temporary_folder.h"
 
 using namespace colod;
 using namespace colod::test;
 using Catch::Contains;
 
 namespace {
-
-constexpr std::array<std::size_t, 11> kLengths = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::array<std::size_t, 11> kColorAt = {0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
-
-struct LasPoint {
-  Vec3 at;
-  int kind = 6;
-  bool is_withheld = false;
-};
-
-template <typename T>
-void set_at(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof(T));
-}
-
-std::string las(const std::vector<LasPoint>& points, int minor, int format, std::size_t extra = 0) {
-  const Vec3 offset(690000, 5330000, 500);
-  const std::size_t head = minor == 4 ? 375 : minor == 3 ? 235 : 227;
-  const std::size_t length = kLengths[format] + extra;
-  std::string bytes(head + 10 + points.size() * length, '\0');
-  bytes.replace(0, 4, "LASF");
-  set_at<std::uint8_t>(bytes, 24, 1),
-      set_at<std::uint8_t>(bytes, 25, static_cast<std::uint8_t>(minor));
-  set_at<std::uint16_t>(bytes, 94, static_cast<std::uint16_t>(head));
-  set_at<std::uint32_t>(bytes, 96, static_cast<std::uint32_t>(head + 10));
-  set_at<std::uint8_t>(bytes, 104, static_cast<std::uint8_t>(format));
-  set_at<std::uint16_t>(bytes, 105, static_cast<std::uint16_t>(length));
-  const bool is_new = minor == 4 && format >= 6;  // the old count is then 0
-  set_at<std::uint32_t>(bytes, 107, is_new ? 0 : static_cast<std::uint32_t>(points.size()));
-  if (minor == 4) set_at<std::uint64_t>(bytes, 247, points.size());
-  for (int k = 0; k < 3; ++k)
-    set_at(bytes, 131 + 8 * k, 0.001), set_at(bytes, 155 + 8 * k, offset[k]);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::size_t p = head + 10 + i * length;
-    for (int k = 0; k < 3; ++k)
-      set_at(bytes, p + 4 * k, static_cast<std::int32_t>(std::lround(1000 * points[i].at[k])));
-    const auto kind = static_cast<std::uint8_t>(points[i].kind);
-    if (format >= 6) {
-      set_at(bytes, p + 16, kind);
-      set_at<std::uint8_t>(bytes, p + 15, points[i].is_withheld ? 4 : 0);
-    } else {
-      set_at<std::uint8_t>(bytes, p + 15, kind | (points[i].is_withheld ? 128 : 0));
-    }
-    for (std::size_t k = 0; kColorAt[format] > 0 && k < 3; ++k)
-      set_at<std::uint16_t>(bytes, p + kColorAt[format] + 2 * k,
-                            static_cast<std::uint16_t>(256 * ((i + k) % 200)));
-  }
-  return bytes;
-}
 
 /// Walls and a roof, some points apart from each other.
 std::vector<LasPoint> house_points(int kind = 6) {
@@ -101,7 +55,7 @@ TEST_CASE("LAS of all versions and point formats gives the same points") {
         INFO("1." << minor << " format " << format << " extra " << extra);
         const Source s = only("a.las", las(points, minor, format, extra));
         REQUIRE(s.cloud.points.size() == points.size());
-        CHECK((s.cloud.points[5] - points[5].at - Vec3(690000, 5330000, 500)).norm() < 1e-6);
+        CHECK((s.cloud.points[5] - points[5].at - kLasOffset).norm() < 1e-6);
         CHECK(s.look.colors.empty() == (kColorAt[format] == 0));
         if (!s.look.colors.empty()) CHECK(s.look.colors[5][0] == Rgb{5, 6, 7});
       }
@@ -125,6 +79,32 @@ TEST_CASE("LAS classes decide: buildings alone where there are any, else what ma
     CHECK_THAT(joined(unclassified.warnings), Contains("70 points left out: ground"));
   }
   CHECK_THAT(failure("a.las", las(house_points(2), 2, 0)), Contains("by its classes"));
+}
+
+TEST_CASE("a cloud is visited point by point, noise and what was withheld apart, block by block") {
+  const std::size_t count = GENERATE(3, 32768, 40000);
+  const int format = GENERATE(0, 7);
+  std::vector<LasPoint> points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.push_back({{0.5 * static_cast<double>(i), 1, 2}, i % 2 ? 2 : 6});
+  points.push_back({{0, 0, 500}, 7}), points.push_back({{0, 0, 500}, 18});
+  points.push_back({{0, 0, 9}, 6, true});
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.las").string();
+  std::ofstream(path, std::ios::binary) << las(points, format > 5 ? 4 : 2, format);
+  const AirborneCloud cloud(path, {});
+  CHECK(cloud.has_color() == (format == 7));
+  std::size_t seen = 0, ground = 0;
+  bool is_right = true;
+  cloud.visit([&](const AirbornePoint& p) {
+    is_right &= (p.at - points[seen].at - kLasOffset).norm() < 1e-6;
+    ground += p.kind == 2, ++seen;
+  });
+  CHECK(is_right);
+  CHECK(seen == count);
+  CHECK(ground == count / 2);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  CHECK_THROWS_WITH(AirborneCloud(path, {}), Contains("truncated"));
 }
 
 TEST_CASE("what is wrong with LAS is named") {

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "measure/metrics.h"
+#include "read/airborne.h"
 #include "read/tileset.h"
 #include "synth/scene_files.h"
 #include "tests/temporary_folder.h"
@@ -165,6 +166,44 @@ TEST_CASE("a scene's tiles come back through the reader in each layout") {
     CHECK((a.min - b.min).norm() < 1e-3);
     CHECK((a.max - b.max).norm() < 1e-3);
   }
+}
+
+TEST_CASE(
+    "an airborne cloud of a scene comes back through the reader, on roofs and on the ground") {
+  const double density = GENERATE(2, 9);
+  const SynthScene scene({.buildings = 3, .seed = 1, .density = density});
+  std::vector<SynthPoint> points;
+  for (int i = 0; i < scene.tile_count(); ++i)
+    for (const SynthPoint& p : scene.points(i)) points.push_back(p);
+  Box box;
+  for (const SynthPoint& p : points) box.extend(p.at);
+  const Vec3 size = scene.box().size();
+  CHECK(static_cast<double>(points.size()) == Approx(density * size.x() * size.y()).epsilon(0.02));
+  const TemporaryFolder folder;
+  write_file(folder.path().string(),
+             {"a.las", las_header(points.size(), box) + las_points(points)});
+  std::size_t i = 0;
+  bool is_right = true;
+  AirborneCloud((folder / "a.las").string(), {}).visit([&](const AirbornePoint& p) {
+    is_right &= (p.at - points[i].at).norm() < 1e-3 && p.kind == points[i].kind;
+    ++i;
+  });
+  CHECK(i == points.size());
+  CHECK(is_right);
+  double built = 0, plan = 0;
+  for (const SynthPoint& p : points) built += p.kind == 6 ? 1 / density : 0;
+  for (int b = 0; b < 3; ++b) {
+    const auto rings = scene.building(b).rings;
+    for (const auto& ring : rings) {
+      double twice = 0;
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec2 &p = ring[k], &q = ring[(k + 1) % ring.size()];
+        twice += p.x() * q.y() - p.y() * q.x();
+      }
+      plan += (&ring == &rings[0] ? 0.5 : -0.5) * std::abs(twice);
+    }
+  }
+  CHECK(built == Approx(plan).epsilon(0.06));
 }
 
 TEST_CASE("a scene's footprints are a collection in its own metres") {

@@ -1,0 +1,138 @@
+// Airborne clouds of places through the program.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "las_files.h"
+#include "temporary_folder.h"
+
+using namespace colod;
+using namespace colod::test;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Run {
+  int code;
+  std::string log;
+};
+
+/// With few voxels: what a scene is taken apart into does not hang on them.
+Run build(const TemporaryFolder& folder, const std::string& rest, const std::string& out = "out") {
+  const std::string log = (folder / "log").string();
+  const std::string command = std::string(COLOD_BINARY) + " build " + rest + " -o " +
+                              (folder / out).string() + " --ns 24 --nr 24 --no-report-html > " +
+                              log + " 2>&1";
+  const int status = std::system(command.c_str());
+  return {WEXITSTATUS(status), slurp(log)};
+}
+
+Json report(const TemporaryFolder& folder) {
+  return Json::parse(slurp(folder / "out" / "report.json"));
+}
+
+/// Gabled houses of 10 by 12 m, so many along each side of a gentle slope, 9 points a m².
+std::vector<LasPoint> place_of(int houses) {
+  std::vector<LasPoint> out;
+  for (int i = 0; i < 30 * houses * 3; ++i)
+    for (int j = 0; j < 30 * houses * 3; ++j) {
+      const double x = (i + 0.4 * std::sin(i * 7 + j)) / 3, y = (j + 0.4 * std::sin(j * 5 + i)) / 3;
+      const double u = std::fmod(x, 30) - 15, v = std::fmod(y, 30) - 15;
+      const bool is_house = std::abs(u) < 5 && std::abs(v) < 6;
+      const double noise = 0.02 * std::sin(i * 13 + j * 29);
+      const double z = 0.03 * x + noise + (is_house ? 5 + 0.6 * (5 - std::abs(u)) : 0);
+      out.push_back({{x, y, z}, is_house ? 6 : 2});
+    }
+  return out;
+}
+
+std::string write_place(const TemporaryFolder& folder, int houses, int format = 0) {
+  const std::string path = (folder / "block.las").string();
+  std::ofstream(path, std::ios::binary) << las(place_of(houses), format > 5 ? 4 : 2, format);
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("a cloud of several houses is a place, one of a single house with its plot a building") {
+  const TemporaryFolder folder;
+  const int houses = GENERATE(1, 2, 3);
+  const int format = GENERATE(0, 7);  // without and with colours
+  const Run run = build(folder, write_place(folder, houses, format));
+  INFO(run.log);
+  CHECK(run.code == 0);
+  const std::string says = std::to_string(houses * houses) + " buildings stand apart";
+  CHECK((run.log.find("taken for a scene, since " + says) != std::string::npos) == (houses > 1));
+  const Json buildings = report(folder)["buildings"];
+  REQUIRE(buildings.size() == static_cast<std::size_t>(houses) * houses);
+  for (const Json& b : buildings) {
+    CHECK(b["layers"].back()["watertight"] == true);
+    if (houses > 1) CHECK(b["layers"].back()["volume"] == Approx(10 * 12 * 6.5).epsilon(0.15));
+  }
+  CHECK(std::filesystem::exists(folder / "out" / "footprints.geojson") == (houses > 1));
+  CHECK(std::filesystem::exists(folder / "out" / "tiles" / "context") == (houses > 1));
+  const std::string check =
+      std::string(COLOD_BINARY) + " info --check " + (folder / "out").string() + " > /dev/null";
+  CHECK(std::system(check.c_str()) == 0);
+}
+
+TEST_CASE("a cloud takes footprints, a place on Earth, and gives the same bytes on more threads") {
+  const TemporaryFolder folder;
+  const std::string path = write_place(folder, 2);
+  const double x = kLasOffset.x() + 10, y = kLasOffset.y() + 9;
+  Json ring = Json::array();
+  for (const auto& [u, v] : {std::pair{0, 0}, {10, 0}, {10, 12}, {0, 12}, {0, 0}})
+    ring.push_back({x + u, y + v});
+  const Json plan = {
+      {"type", "FeatureCollection"},
+      {"crs", {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::25832"}}}}},
+      {"features",
+       {{{"type", "Feature"},
+         {"properties", {{"id", "mine"}}},
+         {"geometry", {{"type", "Polygon"}, {"coordinates", {ring}}}}}}}};
+  std::ofstream(folder / "plan.geojson") << plan.dump();
+  const std::string rest =
+      path + " --crs EPSG:25832 --footprints " + (folder / "plan.geojson").string();
+  std::map<std::string, std::string> files[2];
+  for (const int i : {0, 1}) {
+    const Run run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
+    INFO(run.log);
+    CHECK(run.code == 0);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "out"))
+      if (entry.path().extension() == ".glb" || entry.path().filename() == "tileset.json")
+        files[i][entry.path().string()] = slurp(entry.path());
+  }
+  CHECK(files[0] == files[1]);
+  const Json all = report(folder)["buildings"];
+  REQUIRE(all.size() == 1);
+  CHECK(all[0]["name"] == "mine");
+  const Json tileset = Json::parse(slurp(folder / "out" / "tileset.json"));
+  const auto at = tileset["root"]["transform"].get<std::vector<double>>();
+  CHECK(std::hypot(at[12], at[13], at[14]) == Approx(6.37e6).epsilon(0.01));
+}
+
+TEST_CASE("what of a cloud cannot work is said in one line, and --scene buildings is believed") {
+  const TemporaryFolder folder;
+  const std::string path = write_place(folder, 2);
+  const Run one = build(folder, path + " --scene buildings");
+  INFO(one.log);
+  CHECK(report(folder)["buildings"].size() == 1);
+  CHECK(one.log.find("taken for a scene") == std::string::npos);
+  std::vector<LasPoint> roofs, bare;
+  for (const LasPoint& p : place_of(2)) (p.kind == 6 ? roofs : bare).push_back(p);
+  const std::string of_roofs = (folder / "roofs.las").string(),
+                    of_ground = (folder / "ground.las").string();
+  std::ofstream(of_roofs, std::ios::binary) << las(roofs, 2, 0);
+  std::ofstream(of_ground, std::ios::binary) << las(bare, 2, 0);
+  const Run no_ground = build(folder, of_roofs + " --scene scene", "a");
+  CHECK(no_ground.code == 3);
+  CHECK_THAT(no_ground.log, Contains("no ground that they stand on: --scene buildings"));
+  const Run no_building = build(folder, of_ground + " --scene scene", "b");
+  CHECK(no_building.code == 3);
+  CHECK_THAT(no_building.log, Contains("no building was found on it"));
+}
