@@ -157,16 +157,18 @@ TEST_CASE(
 }
 
 TEST_CASE("a wall of next door that is melted to a slope at the mesh's end is no roof") {
-  for (const double edge : {1.2, 1.6}) {  // the wall melts over two or three of them
-    INFO(edge);
-    const auto row = [](double x, double y) {  // a house whose party wall is x = 8
-      const bool is_in = std::abs(y) < 7 && x > -8;
-      return (is_in ? 5 + std::clamp(0.8 * (x - 8), 0.0, 3.0) : 0) + bump(x, y, 0.1);
-    };
-    const auto relief = find_relief(field(21.0 + edge, edge, row));
-    REQUIRE(relief);
-    for (const Relief::Part& p : relief->parts)
-      if (!p.is_wall && !p.rings.empty()) CHECK(p.normal.z() > 0.97);
+  for (const double edge : {1.0, 1.2, 1.6}) {
+    for (const double steep : {0.8, 1.0}) {
+      INFO("edges of " << edge << ", slope " << steep);
+      const auto row = [&](double x, double y) {  // a house whose party wall is x = 8
+        const bool is_in = std::abs(y) < 7 && x > -8;
+        return (is_in ? 5 + steep * std::max(0.0, x - 8) : 0) + bump(x, y, 0.1);
+      };
+      const auto relief = find_relief(field(16 + 4 * edge, edge, row));  // over two edges
+      REQUIRE(relief);
+      for (const Relief::Part& p : relief->parts)
+        if (!p.is_wall && !p.rings.empty()) CHECK(p.normal.z() > 0.97);
+    }
   }
 }
 
