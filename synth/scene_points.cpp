@@ -32,7 +32,7 @@ class Beams {
     const SynthPoint ground{Vec3(p.x(), p.y(), town_.ground(p)), kGroundClass};
     const int object = view_.object_at(p);
     const int plots = static_cast<int>(town_.plots().size());
-    if (object == SkyView::kGroundClass) return ground;
+    if (object == SkyView::kGround) return ground;
     if (object < plots) return on_roof(standing_.at(object), p, ground);
     const Prop& prop = town_.props()[static_cast<std::size_t>(object - plots)];
     const bool is_plant = prop.kind == PropKind::kTree || prop.kind == PropKind::kHedge;
