@@ -162,26 +162,26 @@ std::string las_header(std::size_t count, const Box& box) {
   std::string system = "colod synth";
   system.resize(64, '\0');
   out += system;
-  append(out, std::uint16_t{1}), append(out, std::uint16_t{2026});
-  append(out, kHeader);
-  append(out, std::uint32_t{kHeader}), append(out, std::uint32_t{0});
-  append(out, std::uint8_t{0}), append(out, kPoint);
-  append(out, static_cast<std::uint32_t>(count)), append(out, static_cast<std::uint32_t>(count));
+  put(out, std::uint16_t{1}), append(out, std::uint16_t{2026});
+  put(out, kHeader);
+  put(out, std::uint32_t{kHeader}), append(out, std::uint32_t{0});
+  put(out, std::uint8_t{0}), append(out, kPoint);
+  put(out, static_cast<std::uint32_t>(count)), append(out, static_cast<std::uint32_t>(count));
   out.resize(131, '\0');
-  for (int k = 0; k < 3; ++k) append(out, 0.001);
-  for (int k = 0; k < 3; ++k) append(out, 0.0);
-  for (int k = 0; k < 3; ++k) append(out, box.max[k]), append(out, box.min[k]);
+  for (int k = 0; k < 3; ++k) put(out, 0.001);
+  for (int k = 0; k < 3; ++k) put(out, 0.0);
+  for (int k = 0; k < 3; ++k) put(out, box.max[k]), append(out, box.min[k]);
   return out;
 }
 
 std::string las_points(const std::vector<SynthPoint>& points) {
   std::string out;
   for (const SynthPoint& p : points) {
-    for (int k = 0; k < 3; ++k) append(out, static_cast<std::int32_t>(std::lround(1000 * p.at[k])));
-    append(out, std::uint16_t{0});
-    append(out, std::uint8_t{9});  // first of one return
-    append(out, static_cast<std::uint8_t>(p.kind));
-    append(out, std::uint32_t{0});
+    for (int k = 0; k < 3; ++k) put(out, static_cast<std::int32_t>(std::lround(1000 * p.at[k])));
+    put(out, std::uint16_t{0});
+    put(out, std::uint8_t{9});  // first of one return
+    put(out, static_cast<std::uint8_t>(p.kind));
+    put(out, std::uint32_t{0});
   }
   return out;
 }

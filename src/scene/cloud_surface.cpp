@@ -144,7 +144,7 @@ double limited(double a, double b) {
   if (std::isnan(b)) b = a;
   if (std::isnan(a) || a * b <= 0) return 0;
   const double slope = std::abs(a) < std::abs(b) ? a : b;
-  return std::abs(slope) > kSteepest ? 0 : slope;
+  return std::abs(slope) > kSteepestSurface ? 0 : slope;
 }
 
 /// Heights of points → of the middles of their cells.
@@ -218,7 +218,7 @@ CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions
   out.points = facts.points;
   out.density = static_cast<double>(facts.points) / covered_area(clouds, facts.box);
   const bool has_ground =
-      static_cast<double>(facts.ground) > kLeastGround * static_cast<double>(facts.points);
+      static_cast<double>(facts.ground) > kLeastGroundPoints * static_cast<double>(facts.points);
   out.map = empty_map(facts.box, cell_for(out.density, facts, files[0]),
                       has_color && facts.brightest > 0);
   Gathering cells(out.map, facts, has_ground);

@@ -20,7 +20,7 @@ namespace {
 
 using namespace parameters::ground;
 
-struct Raster {
+struct HeightRaster {
   Vec2 origin;
   double cell = 1;
   int nx = 0, ny = 0;
@@ -46,7 +46,7 @@ struct Raster {
 /// Calls visit(cell, height) at points of the face closer together than cells in so many
 /// dimensions: 2, the plan, or 3.
 template <int kDimensions, typename Visit>
-void sample_face(const Mesh& mesh, const Face& f, const Raster& r, const Visit& visit) {
+void sample_face(const Mesh& mesh, const Face& f, const HeightRaster& r, const Visit& visit) {
   constexpr int kMostSteps = 4000;
   const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
   const auto length = [](const Vec3& side) { return side.head<kDimensions>().norm(); };
@@ -61,12 +61,12 @@ void sample_face(const Mesh& mesh, const Face& f, const Raster& r, const Visit& 
     }
 }
 
-Raster rasterize(const Mesh& mesh) {
+HeightRaster rasterize(const Mesh& mesh) {
   Box box;
   for (const Face& f : mesh.faces)
     for (const int v : f)
       if (mesh.vertices[v].allFinite()) box.extend(mesh.vertices[v]);
-  Raster r;
+  HeightRaster r;
   if (box.is_empty()) return r;
   constexpr double kMostCells = 2000;  // a side
   r.cell = std::clamp(kCellShare * box.diagonal(), kLeastCell, kMostCell);
@@ -85,7 +85,7 @@ Raster rasterize(const Mesh& mesh) {
 }
 
 /// Numbers of the sets of cells that `is_joined` connects, −1: not `is_in`; in order of cells.
-std::vector<int> connect(const Raster& r, const std::function<bool(int)>& is_in,
+std::vector<int> connect(const HeightRaster& r, const std::function<bool(int)>& is_in,
                          const std::function<bool(int, int)>& is_joined, int* count) {
   std::vector<int> set(r.size(), -1), stack;
   *count = 0;
@@ -106,7 +106,7 @@ std::vector<int> connect(const Raster& r, const std::function<bool(int)>& is_in,
 }
 
 /// Covered cells beside the outside: uncovered cells that are joined with the corner.
-std::vector<char> find_rim(const Raster& r) {
+std::vector<char> find_rim(const HeightRaster& r) {
   int count = 0;
   const auto open = connect(
       r, [&](int c) { return !r.is_covered(c); }, [](int, int) { return true; }, &count);
@@ -118,7 +118,7 @@ std::vector<char> find_rim(const Raster& r) {
 }
 
 /// The height of the nearest of the given cells, breadth first.
-std::vector<double> spread_heights(const Raster& r, const std::vector<char>& is_ground) {
+std::vector<double> spread_heights(const HeightRaster& r, const std::vector<char>& is_ground) {
   std::vector<double> h(r.size(), kInfinity);
   std::vector<int> front;
   for (int c = 0; c < r.size(); ++c)
@@ -133,7 +133,7 @@ std::vector<double> spread_heights(const Raster& r, const std::vector<char>& is_
 }
 
 /// The smooth surface with most of the rim; empty: no ground.
-std::vector<char> main_surface(const Raster& r, const std::vector<char>& is_rim) {
+std::vector<char> main_surface(const HeightRaster& r, const std::vector<char>& is_rim) {
   int count = 0;
   const double step = kNoise + kSteepest * r.cell;
   const std::vector<int> surface = connect(
@@ -161,7 +161,7 @@ std::vector<char> main_surface(const Raster& r, const std::vector<char>& is_rim)
 }
 
 /// Most cells at the buildings' border have a wall that comes down to the ground.
-bool has_walls(const Mesh& mesh, const Raster& r, const std::vector<double>& h,
+bool has_walls(const Mesh& mesh, const HeightRaster& r, const std::vector<double>& h,
                const std::vector<char>& is_built) {
   std::vector<double> foot(r.size(), kInfinity);  // metres above the ground, itself not
   for (const Face& f : mesh.faces)
@@ -195,7 +195,7 @@ struct Blob {
 };
 
 /// Which built cells are buildings: large and high enough. Empty: none is.
-std::vector<char> find_buildings(const Raster& r, const std::vector<double>& h,
+std::vector<char> find_buildings(const HeightRaster& r, const std::vector<double>& h,
                                  const std::vector<char>& is_built, int* dropped) {
   int count = 0;
   const std::vector<int> number = connect(
@@ -220,7 +220,7 @@ std::vector<char> find_buildings(const Raster& r, const std::vector<double>& h,
 }
 
 struct Site {
-  Raster raster;
+  HeightRaster raster;
   std::vector<double> ground;     ///< h
   std::vector<char> is_building;  ///< empty: there is no ground to part from
   int things = 0;                 ///< that stand about
@@ -228,7 +228,7 @@ struct Site {
 
 Site survey(const Mesh& mesh) {
   Site site{rasterize(mesh), {}, {}, 0};
-  const Raster& r = site.raster;
+  const HeightRaster& r = site.raster;
   if (r.size() == 0) return site;
   const std::vector<char> is_ground = main_surface(r, find_rim(r));
   if (is_ground.empty()) return site;
@@ -248,7 +248,7 @@ Site survey(const Mesh& mesh) {
 }
 
 /// A cell beside a building is its wall's too.
-std::vector<char> widened(const Raster& r, const std::vector<char>& is_in) {
+std::vector<char> widened(const HeightRaster& r, const std::vector<char>& is_in) {
   std::vector<char> wide = is_in;
   for (int c = 0; c < r.size(); ++c)
     if (is_in[c]) r.around(c, 1, [&](int d) { wide[d] = 1; });

@@ -64,15 +64,16 @@ constexpr double kMostCells = 64e6;  // of a map: a gibibyte
 // Airborne clouds; seen on made-up ones of 2 to 20 points a square metre (odd seeds, development).
 namespace colod::parameters::cloud {
 
-constexpr double kPointsACell = 2.2;   // on the mean: one of ten cells has none, which others fill
-constexpr double kLargestCell = 2;     // metres: beyond, houses are a handful of cells
-constexpr double kDensityCell = 4;     // metres: where the cloud is at all
-constexpr double kSpike = 2;           // metres over all cells around: a bird, a wire, a pole
-constexpr int kFillRounds = 4;         // cells from either side that a gap is closed over
-constexpr int kSlopeRounds = 3;        // until slopes and heights agree
-constexpr double kSteepest = 2;        // metres a metre: what is steeper is a wall, not a roof
-constexpr int kTile = 128;             // cells a side
-constexpr double kLeastGround = 0.02;  // of the points that are ground by class, to believe it
+constexpr double kPointsACell = 2.2;    // on the mean: one of ten cells has none, which others fill
+constexpr double kLargestCell = 2;      // metres: beyond, houses are a handful of cells
+constexpr double kDensityCell = 4;      // metres: where the cloud is at all
+constexpr double kSpike = 2;            // metres over all cells around: a bird, a wire, a pole
+constexpr int kFillRounds = 4;          // cells from either side that a gap is closed over
+constexpr int kSlopeRounds = 3;         // until slopes and heights agree
+constexpr double kSteepestSurface = 2;  // metres a metre: what is steeper is a wall, not a roof
+constexpr int kTile = 128;              // cells a side
+constexpr double kLeastGroundPoints =
+    0.02;  // of the points that are ground by class, to believe it
 
 }  // namespace colod::parameters::cloud
 
