@@ -13,10 +13,10 @@ namespace colod {
 
 namespace {
 
-constexpr double kWorth = 0.5;         // of an image's pixels: of what is more it stays
-constexpr int kMargin = 2;             // pixels around a chart, that filters look at
-constexpr int kQuality = 92;           // of JPEG, which was one before
-constexpr int kLargest = 8192;         // pixels a side
+constexpr double kWorth = 0.5;               // of an image's pixels: of what is more it stays
+constexpr int kMargin = 2;                   // pixels around a chart, that filters look at
+constexpr int kQuality = 92;                 // of JPEG, which was one before
+constexpr int kLargest = 8192;               // pixels a side
 constexpr std::size_t kMostCharts = 20'000;  // packing takes their square
 
 /// Pixels of one image, from (x, y) on.
@@ -64,8 +64,7 @@ void find_charts(const Source& source, int width, int height, Worn& worn) {
     const auto to = [](double v, int most) {
       return std::min(most, static_cast<int>(std::ceil(v)) + kMargin);
     };
-    worn.charts.push_back(
-        {x, y, to(box.max.x(), width) - x, to(box.max.y(), height) - y});
+    worn.charts.push_back({x, y, to(box.max.x(), width) - x, to(box.max.y(), height) - y});
   }
 }
 

@@ -47,8 +47,7 @@ void Pieces::quarter(const Source& source, const std::shared_ptr<const Source>& 
                      std::vector<int> faces, std::size_t most, int depth,
                      std::vector<std::size_t>& out) {
   if (faces.empty()) return;
-  if (faces.size() <= most || depth >= kDeepest)
-    return out.push_back(put(source, frame, faces));
+  if (faces.size() <= most || depth >= kDeepest) return out.push_back(put(source, frame, faces));
   Box box;
   for (const int f : faces) {
     const Vec2 p = middle_of(source.mesh, f);
@@ -60,8 +59,7 @@ void Pieces::quarter(const Source& source, const std::shared_ptr<const Source>& 
     quarters[(p.x() > box.center().x() ? 1 : 0) + (p.y() > box.center().y() ? 2 : 0)].push_back(f);
   }
   faces = {};
-  for (std::vector<int>& q : quarters)
-    quarter(source, frame, std::move(q), most, depth + 1, out);
+  for (std::vector<int>& q : quarters) quarter(source, frame, std::move(q), most, depth + 1, out);
 }
 
 std::size_t Pieces::put(const Source& source, const std::shared_ptr<const Source>& frame,
