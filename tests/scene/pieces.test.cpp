@@ -35,8 +35,9 @@ void tell(const Source& s, Told& told) {
   for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
     std::array<double, 9> at;
     for (std::size_t k = 0; k < 9; ++k)
-      at[k] = s.mesh.vertices[static_cast<std::size_t>(s.mesh.faces[f][k / 3])][static_cast<int>(
-          k % 3)];
+      at[k] =
+          s.mesh
+              .vertices[static_cast<std::size_t>(s.mesh.faces[f][k / 3])][static_cast<int>(k % 3)];
     told.insert({at, s.look.colors[f]});
   }
 }
@@ -159,8 +160,8 @@ TEST_CASE("a mesh of more faces than a client draws at once is several tiles, wh
   const Box box = bounding_box(place.vertices);
   if (is_y_up) place = y_up(place);
   std::ofstream(folder / "place.obj") << obj_text(place);
-  const SceneTiles tiles(list_tiles((folder / "place.obj").string()),
-                         Eigen::Matrix4d::Identity(), 0, true, {});
+  const SceneTiles tiles(list_tiles((folder / "place.obj").string()), Eigen::Matrix4d::Identity(),
+                         0, true, {});
   CHECK((tiles.count() > 1) == (side > 173));
   CHECK(tiles.faces() == place.faces.size());
   std::size_t faces = 0;
