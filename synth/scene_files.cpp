@@ -162,15 +162,15 @@ std::string las_header(std::size_t count, const Box& box) {
   std::string system = "colod synth";
   system.resize(64, '\0');
   out += system;
-  put(out, std::uint16_t{1}), append(out, std::uint16_t{2026});
+  put(out, std::uint16_t{1}), put(out, std::uint16_t{2026});
   put(out, kHeader);
-  put(out, std::uint32_t{kHeader}), append(out, std::uint32_t{0});
-  put(out, std::uint8_t{0}), append(out, kPoint);
-  put(out, static_cast<std::uint32_t>(count)), append(out, static_cast<std::uint32_t>(count));
+  put(out, std::uint32_t{kHeader}), put(out, std::uint32_t{0});
+  put(out, std::uint8_t{0}), put(out, kPoint);
+  put(out, static_cast<std::uint32_t>(count)), put(out, static_cast<std::uint32_t>(count));
   out.resize(131, '\0');
   for (int k = 0; k < 3; ++k) put(out, 0.001);
   for (int k = 0; k < 3; ++k) put(out, 0.0);
-  for (int k = 0; k < 3; ++k) put(out, box.max[k]), append(out, box.min[k]);
+  for (int k = 0; k < 3; ++k) put(out, box.max[k]), put(out, box.min[k]);
   return out;
 }
 
