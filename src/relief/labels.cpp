@@ -46,7 +46,6 @@ std::vector<char> opened(int columns, int rows, const std::vector<char>& is_in, 
 struct Shape {
   double border = 0, at_ground = 0, at_nothing = 0;  // metres
   double half_width = 0;                             // metres, where it is widest, in whole cells
-  double uphill = 0, uphill_at_end = 0;  // metres of border, by how far they climb there
 };
 
 class Labeller {
@@ -121,15 +120,10 @@ class Labeller {
       }
     for (int i = 0; i < f_.size(); ++i) {
       if (label_[i] < 0) continue;
-      const auto around = f_.beside(i);
-      for (int way = 0; way < 4; ++way) {
-        const int j = around[way];
+      for (const int j : f_.beside(i)) {
         const int other = j < 0 ? kOutside : label_[j];
         if (other == label_[i]) continue;
         Shape& s = shapes[label_[i]];
-        const double climb = f_.cell * patches_[label_[i]].slope[way / 2] * (way % 2 ? 1 : -1);
-        s.uphill += std::max(climb, 0.0);
-        if (climb > 0 && is_end_near(i, way)) s.uphill_at_end += climb;
         s.border += f_.cell;
         s.at_ground += j >= 0 && f_.has(j) && other < 0 ? f_.cell : 0;
         s.at_nothing += j < 0 || !f_.has(j) ? f_.cell : 0;
@@ -138,26 +132,8 @@ class Labeller {
     return shapes;
   }
 
-  /// Going out of a cell one meets the end of the mesh before any other patch.
-  bool is_end_near(int i, int way) const {
-    const int own = label_[i], most = static_cast<int>(std::ceil(tolerance_ / f_.cell));
-    for (int step = 0; step <= most; ++step) {
-      i = f_.beside(i)[way];
-      if (i < 0 || !f_.has(i)) return true;
-      if (label_[i] >= 0 && label_[i] != own) return false;
-    }
-    return false;
-  }
-
-  /// A wall of next door, melted over an edge or two: it climbs to where the mesh ends. A roof of
-  /// the building has its other side beyond its ridge, or what lies behind its wall.
-  bool is_next_door(const Patch& patch, const Shape& shape) const {
-    return patch.slope.norm() > kNextDoorSlope && shape.half_width < kNextDoorCells * f_.cell &&
-           shape.uphill_at_end > kNextDoorEnd * shape.uphill;
-  }
-
   /// Patches that are none: too small, or the side of a melted wall (their neighbours take them),
-  /// crowns and cars beside the building, strips of what stands next door and its walls (outside).
+  /// crowns and cars beside the building, and strips of what stands next door (they are outside).
   void drop_clutter() {
     const std::vector<Shape> shape = shapes();
     double total = 0;
@@ -172,7 +148,6 @@ class Labeller {
       const bool is_minor = p.area < kMinor * total;
       becomes[a] = static_cast<int>(a);
       if (is_strip && p.area < kStripArea * total) becomes[a] = kOutside;
-      if (p.area < kNextDoorArea * total && is_next_door(p, s)) becomes[a] = kOutside;
       if (is_minor && is_rough) becomes[a] = s.at_ground > 0.5 * s.border ? kOutside : kOpen;
       const bool is_slide =
           p.slope.norm() > kSlide && s.half_width < std::max(kStrip, kSlideSpan * span_);

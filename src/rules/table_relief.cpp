@@ -47,15 +47,7 @@ std::vector<Parameter> melted_numbers() {
       {"most_hanging", "", relief::kMostHanging,
        "of the rim of what is low: walls that hang below it, which make it a roof"},
       {"strip", "m", relief::kStrip, "half the width of what is cut from next door"},
-      {"next_door_slope", "", relief::kNextDoorSlope,
-       "of what climbs to the end of the mesh: a melted wall of next door"},
-      {"next_door_cells", "", relief::kNextDoorCells,
-       "half its width, in cells of a third of an edge: walls melt over no more"},
-      {"next_door_end", "", relief::kNextDoorEnd,
-       "of its upper border, where the mesh ends within the tolerance"},
-      {"next_door_area", "", relief::kNextDoorArea, "of all patches' area, at most"},
-      {"roof_volume", "", coanalysis::kRoofVolume,
-       "of the building's: a roof is on each layer if without it so much would be another"},
+      {"roof_share", "", coanalysis::kRoofShare, "of the plan: a larger roof is on each layer"},
       {"thin", "m", relief::kThin, "half the width of what is no roof of its own"},
       {"slide", "", relief::kSlide, "slope of a strip that is the side of a melted wall"},
       {"melted", "m", relief::kMelted, "length of a melted corner"},
@@ -89,9 +81,9 @@ RuleInfo melted_rule() {
           "Draws the mesh as heights along most of its border, parts the ground around, joins "
           "neighbouring pieces of roof while a plane explains less than it costs, raises blocks "
           "where the heights stand off a roof, draws borders onto few lines of few directions, and "
-          "hands on these roofs and the upright walls between them as planes; a roof without "
-          "which the volume would be off by 2 % is on each layer, and has all its walls on each "
-          "layer that it is on.",
+          "hands on these roofs and the upright walls between them as planes; a roof over a tenth "
+          "of "
+          "the plan is on each layer, and has all its walls on each layer that it is on.",
       .paper = "The paper grows planes in space, of whatever surface.",
       .reason =
           "Each bump became a plane: of 47 buildings of a drone scene the finest layer had more "

@@ -156,35 +156,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a wall of next door that is melted to a slope at the mesh's end is no roof") {
-  for (const double edge : {1.0, 1.2, 1.6}) {
-    for (const double steep : {0.8, 1.0}) {
-      INFO("edges of " << edge << ", slope " << steep);
-      const auto row = [&](double x, double y) {  // a house whose party wall is x = 8
-        const bool is_in = std::abs(y) < 7 && x > -8;
-        return (is_in ? 5 + steep * std::max(0.0, x - 8) : 0) + bump(x, y, 0.1);
-      };
-      const auto relief = find_relief(field(16 + 4 * edge, edge, row));  // over two edges
-      REQUIRE(relief);
-      for (const Relief::Part& p : relief->parts)
-        if (!p.is_wall && !p.rings.empty()) CHECK(p.normal.z() > 0.97);
-    }
-  }
-}
-
-TEST_CASE("a steep roof of one slope is none of next door where there is ground around") {
-  for (const double edge : {0.4, 1.2}) {
-    INFO(edge);
-    const auto shed = [](double x, double y) {
-      const bool is_in = std::abs(x) < 7 && std::abs(y) < 9;
-      return (is_in ? 5 + 0.6 * (x + 7) : 0) + bump(x, y, 0.08);
-    };
-    const auto relief = find_relief(field(24, edge, shed));
-    REQUIRE(relief);
-    CHECK(count(*relief, false) == 1);
-  }
-}
-
 TEST_CASE("a low roof between higher neighbours is no ground") {
   const auto court = [](double x, double y) {
     const double roof = std::abs(x) < 7 ? 4 : 11;  // strips of next door on two sides
