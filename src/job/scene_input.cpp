@@ -276,9 +276,18 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
+PlaceDoubt doubt_of_cloud(const std::string& path, const ReadOptions& read) {
+  try {
+    return looks_like_scene(surface_of({path}, read).map);
+  } catch (const std::exception&) {
+    return {};  // whoever reads it for the work tells of it
+  }
+}
+
 /// What tells that a file is a place or a piece of one. It is read the way up that it seems to
 /// stand.
 PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
+  if (is_airborne(file.path)) return doubt_of_cloud(file.path, read);
   if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true, ""};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;

@@ -210,11 +210,18 @@ PlaceDoubt looks_like_scene(const HeightMap& map) {
     return static_cast<double>(std::count(classes.of_cell.begin(), classes.of_cell.end(), c));
   };
   const double cells = static_cast<double>(map.size());
-  plan.ground = count(SceneClass::kGround) / std::max(cells - count(SceneClass::kNothing), 1.0);
+  const double covered = std::max(cells - count(SceneClass::kNothing), 1.0);
+  plan.ground = count(SceneClass::kGround) / covered;
   plan.groups = groups_of(map, classes, std::vector<char>(map.size(), 0));
   plan.side = map.cell * std::min(map.width, map.height);
-  PlaceDoubt doubt = doubt_of(plan);
-  return plan.side >= kLeastTile && !doubt.place.empty() ? doubt : PlaceDoubt{};
+  plan.is_tile = covered >= kFilled * cells;  // as surveys are cut
+  if (const PlaceDoubt doubt = doubt_of(plan); plan.side >= kLeastTile && !doubt.place.empty())
+    return doubt;
+  if (plan.side >= kLeastSide && plan.ground >= kLeastGround)
+    return {"is " + std::to_string(std::lround(plan.side)) + " m wide, and terrain takes " +
+                percent(plan.ground) + " of its plan",
+            false, ""};
+  return {};
 }
 
 bool is_wide(const Source& source) {

@@ -136,3 +136,52 @@ TEST_CASE("what of a cloud cannot work is said in one line, and --scene building
   CHECK(no_building.code == 3);
   CHECK_THAT(no_building.log, Contains("no building was found on it"));
 }
+
+namespace {
+
+/// Flat-roofed houses on level ground, 9 points a m²; each from (x, y), 10 by 12 m.
+std::vector<LasPoint> place_with(double width, double depth,
+                                 const std::vector<std::pair<double, double>>& houses) {
+  std::vector<LasPoint> out;
+  for (int i = 0; i < 3 * width; ++i)
+    for (int j = 0; j < 3 * depth; ++j) {
+      const double x = (i + 0.4 * std::sin(i * 7 + j)) / 3, y = (j + 0.4 * std::sin(j * 5 + i)) / 3;
+      bool is_house = false;
+      for (const auto& [u, v] : houses) is_house |= x > u && x < u + 10 && y > v && y < v + 12;
+      const double noise = 0.02 * std::sin(i * 13 + j * 29);
+      out.push_back({{x, y, noise + (is_house ? 6 : 0)}, is_house ? 6 : 2});
+    }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("two houses on a cut block are a place, one on a wide block is a word's worth") {
+  const TemporaryFolder folder;
+  const double width = GENERATE(55, 90);
+  const bool has_two = GENERATE(true, false);
+  CAPTURE(width, has_two);
+  std::vector<std::pair<double, double>> houses = {{8, 20}};
+  if (has_two) houses.push_back({width - 20, 20});
+  const std::string path = (folder / "block.las").string();
+  std::ofstream(path, std::ios::binary) << las(place_with(width, 55, houses), 2, 0);
+  const Run run = build(folder, path);
+  INFO(run.log);
+  CHECK(run.code == 0);
+  CHECK(report(folder)["buildings"].size() == houses.size());
+  CHECK((run.log.find("taken for a scene, since 2 buildings") != std::string::npos) == has_two);
+  CHECK((run.log.find("it is taken for one building: --scene scene takes it apart") !=
+         std::string::npos) == !has_two);
+}
+
+TEST_CASE("of several clouds one that is a place is told of") {
+  const TemporaryFolder folder;
+  const std::string path = write_place(folder, 2);
+  const std::string house = (folder / "house.las").string();
+  std::ofstream(house, std::ios::binary) << las(place_of(1), 2, 0);
+  const Run run = build(folder, path + " " + house);
+  INFO(run.log);
+  CHECK(run.code == 1);
+  CHECK_THAT(run.log, Contains("block.las: looks like a scene: 4 buildings"));
+  CHECK(report(folder)["buildings"].size() == 2);
+}
