@@ -19,8 +19,8 @@ struct PlaceDoubt {
 /// does of what is drawn, less than 5 m wide, or no mesh. O(faces log faces + cells of its plan).
 PlaceDoubt looks_like_scene(const Source& source);
 
-/// The same of the surface of a cloud; a doubt where it is 50 m wide and shows much terrain, yet not
-/// several buildings that stand apart.
+/// The same of the surface of a cloud; a doubt where it is 50 m wide and shows much terrain, yet
+/// not several buildings that stand apart.
 PlaceDoubt looks_like_scene(const HeightMap& map);
 
 /// Whether its plan is 50 m long: few buildings are.
