@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "exporters/gltf/metadata.h"
 #include "kept.h"
 #include "tile_json.h"
 
