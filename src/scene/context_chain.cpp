@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "context_picture.h"
+#include "core/bytes.h"
 #include "core/error.h"
 #include "core/meshopt.h"
 #include "core/parallel.h"
@@ -243,18 +243,6 @@ Work simplified(const Work& from, double error) {
   return out;
 }
 
-template <typename T>
-void put(std::string& out, const std::vector<T>& values) {
-  out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-template <typename T>
-const char* take(const char* from, std::size_t count, std::vector<T>& to) {
-  to.resize(count);
-  std::memcpy(static_cast<void*>(to.data()), from, count * sizeof(T));
-  return from + count * sizeof(T);
-}
-
 }  // namespace
 
 struct ContextChain::Impl {
@@ -351,9 +339,9 @@ void ContextChain::Impl::store(std::size_t node, const Work& work, const std::st
   Place& place = places[node];
   place.vertices = work.mesh.vertices.size(), place.faces = work.mesh.faces.size();
   std::string bytes;
-  put(bytes, work.mesh.vertices);
-  put(bytes, work.mesh.faces);
-  put(bytes, work.is_joint);
+  put_all(bytes, work.mesh.vertices);
+  put_all(bytes, work.mesh.faces);
+  put_all(bytes, work.is_joint);
   place.at = file.append(bytes);
   place.image_bytes = picture.size();
   if (!picture.empty()) place.image = file.append(picture);
@@ -365,9 +353,9 @@ ChainPart ContextChain::Impl::part(std::size_t node) const {
   if (place.faces == 0) return out;
   const std::string bytes =
       file.read(place.at, place.vertices * (sizeof(Vec3) + 1) + place.faces * sizeof(Face));
-  const char* at = take(bytes.data(), place.vertices, out.source.mesh.vertices);
-  at = take(at, place.faces, out.source.mesh.faces);
-  take(at, place.vertices, out.is_joint);
+  const char* at = take_all(bytes.data(), place.vertices, out.source.mesh.vertices);
+  at = take_all(at, place.faces, out.source.mesh.faces);
+  take_all(at, place.vertices, out.is_joint);
   if (place.image_bytes > 0)
     wear(place.frame, {file.path(), place.image, place.image_bytes, false, 0, 0}, out.source);
   return out;

@@ -2,7 +2,8 @@
 #include "pieces.h"
 
 #include <array>
-#include <cstring>
+
+#include "core/bytes.h"
 
 namespace colod {
 
@@ -15,18 +16,6 @@ Vec2 middle_of(const Mesh& mesh, int face) {
   Vec3 sum = Vec3::Zero();
   for (const int v : f) sum += mesh.vertices[static_cast<std::size_t>(v)];
   return sum.head<2>() / 3;
-}
-
-template <typename T>
-void put_all(std::string& out, const std::vector<T>& values) {
-  out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-template <typename T>
-const char* take_all(const char* from, std::size_t count, std::vector<T>& to) {
-  to.resize(count);
-  std::memcpy(static_cast<void*>(to.data()), from, count * sizeof(T));
-  return from + count * sizeof(T);
 }
 
 }  // namespace
