@@ -52,7 +52,7 @@ Eigen::Matrix<double, 64, kComponents> principal_components(
     const Histogram h = histogram_of(d) - mean;
     covariance.selfadjointView<Eigen::Lower>().rankUpdate(h);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 64, 64>> solver(covariance);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   return solver.eigenvectors().rightCols<kComponents>();
 }
 
