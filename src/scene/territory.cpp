@@ -13,6 +13,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/flat.h"
 #include "cutter.h"
 #include "parameters.h"
 
@@ -28,8 +29,6 @@ using parameters::territory::kEaves;
 
 constexpr double kSame = 1e-6;  // metres: nearer points are one
 constexpr double kBin = 4;      // metres, of the grid that pieces are found by
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 Vec2 nearest(const Vec2& a, const Vec2& b, const Vec2& p) {
   const Vec2 along = b - a;
