@@ -35,7 +35,7 @@ function(colod_room name)
 endfunction()
 
 # Compiles these sources of a target in one go, or ALL in batches, so that what they include is read and instantiated once: those
-# that include CGAL in one, as its headers cost more than all others, the rest eight by eight.
+# that include CGAL in one, as its headers cost more than all others, the rest sixteen by sixteen.
 # A batch's sources are no main file for the compiler, which then warns of types that a class keeps to its own source.
 function(colod_together target)
   if(ARGN AND COLOD_UNITY)
@@ -56,7 +56,7 @@ function(colod_together target)
     if(cgal)
       set(batch cgal)
     else()
-      math(EXPR batch "${count} / 8")
+      math(EXPR batch "${count} / 16")
       math(EXPR count "${count} + 1")
     endif()
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP batch_${batch})

@@ -31,27 +31,27 @@ double lean_towards(const Flight& flight, const Vec3& normal) {
 }
 
 /// How high the walls of one direction reach.
-struct Facade {
+struct DroneSide {
   Vec3 normal;
   double top;
 };
 
-Facade& side_of(std::vector<Facade>& sides, const Vec3& normal) {
+DroneSide& side_of(std::vector<DroneSide>& sides, const Vec3& normal) {
   constexpr double kAlike = 0.95;  // cosine
-  for (Facade& side : sides)
+  for (DroneSide& side : sides)
     if (side.normal.dot(normal) > kAlike) return side;
-  return sides.emplace_back(Facade{normal, -std::numeric_limits<double>::infinity()});
+  return sides.emplace_back(DroneSide{normal, -std::numeric_limits<double>::infinity()});
 }
 
 /// Walls' vertices move outwards the more, the lower they are; corners with both their walls.
 std::vector<Vec3> leaned(const Mesh& building, const std::vector<int>& face_object,
                          const Flight& flight) {
-  std::vector<Facade> sides;
+  std::vector<DroneSide> sides;
   std::vector<std::vector<Vec3>> walls(building.vertices.size());
   for (std::size_t f = 0; f < building.faces.size(); ++f) {
     const Vec3 normal = normal_of_face(building, building.faces[f]);
     if (face_object[f] != kBody || std::abs(normal.z()) > kSteep) continue;
-    Facade& side = side_of(sides, normal);
+    DroneSide& side = side_of(sides, normal);
     for (int v : building.faces[f]) {
       side.top = std::max(side.top, building.vertices[v].z());
       if (std::none_of(walls[v].begin(), walls[v].end(),

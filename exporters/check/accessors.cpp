@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr std::size_t kMostWork = 20'000'000;  // some seconds, and below 1 GiB of numbers
-constexpr std::size_t kBestPacking = 64;       // of meshopt's codecs of version 0, slack for heads
+constexpr std::size_t kBestMeshopt = 64;       // of meshopt's codecs of version 0, slack for heads
 
 struct View {
   std::string bytes;
@@ -27,7 +27,7 @@ View read_packed(CheckedGlb& glb, const Json& packed) {
   const std::size_t count = whole_number(packed.at("count"));
   const std::size_t stride = whole_number(packed.at("byteStride"));
   const bool is_index = packed.at("mode") == "TRIANGLES";
-  const std::size_t most = kBestPacking * payload.size() + 1024;
+  const std::size_t most = kBestMeshopt * payload.size() + 1024;
   const bool is_possible =
       is_index ? count % 3 == 0 : stride > 0 && stride <= 256 && stride % 4 == 0;
   if (!is_possible || count > most || count * (is_index ? 4 : stride) > most)

@@ -42,7 +42,7 @@ constexpr std::size_t kStarts = 8, kMaxFacesToTurn = 1000;
 
 /// Faces or vertices that a byte of a stream stands for at most: a dense regular grid takes about a
 /// bit a face.
-constexpr std::size_t kBestPacking = 64;
+constexpr std::size_t kBestDraco = 64;
 
 constexpr int kMaxIntegerId = 65535;  // beyond it glTF wants floats, exact to 2^24
 
@@ -284,7 +284,7 @@ DracoCounts stated_counts(const std::string& bytes) {
     return value;
   };
   const std::size_t first = varint(), second = varint();
-  if (std::max(first, second) > kBestPacking * bytes.size()) return fail("cannot hold its counts");
+  if (std::max(first, second) > kBestDraco * bytes.size()) return fail("cannot hold its counts");
   return is_edgebreaker ? DracoCounts{second, first} : DracoCounts{first, second};
 }
 

@@ -13,7 +13,7 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -52,10 +52,10 @@ QuantizationGrid level_grid(const ExportLevel& level, const Vec3& pivot, bool is
                          options.quantization * (is_finest ? kFinestShare : 1.0));
 }
 
-Json level_json(const ExportBuilding& building, std::size_t lod, const ExportLevel& level,
-                double rounding, double diameter, const SwitchFacts& switching) {
+OrderedJson level_json(const ExportBuilding& building, std::size_t lod, const ExportLevel& level,
+                       double rounding, double diameter, const SwitchFacts& switching) {
   const double view = 2 * std::tan(switching.fov_y_deg * std::numbers::pi / 360);
-  Json json;
+  OrderedJson json;
   json["lod"] = lod;
   json["layer"] = level.layers.back();
   json["layers"] = level.layers;
@@ -114,10 +114,11 @@ std::vector<Encoded> encode_engine_levels(const ExportBuilding& building,
     document.json["asset"]["extras"] = {{"pivot", {world.x(), world.y(), world.z()}},
                                         {"pivotAxes", "z up, metres"}};
     const std::string name = level_name(building, lod);
-    Json primitive = add_primitive(document, flat, grid, Compression::kNone);
+    OrderedJson primitive = add_primitive(document, flat, grid, Compression::kNone);
     set_look(document, look, building.name, primitive);
     document.json["materials"][0]["name"] = building.name;
-    document.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
+    document.json["meshes"].push_back(
+        {{"name", name}, {"primitives", OrderedJson::array({primitive})}});
     document.json["nodes"].push_back({{"name", name},
                                       {"mesh", 0},
                                       {"extras",
@@ -133,21 +134,22 @@ std::string lods_entry(const ExportBuilding& building, const EngineOptions& opti
   const auto levels = levels_of(building);
   const Vec3 pivot = pivot_of(building), world = building.origin + pivot;
   const double diameter = bounding_box(levels[0]->mesh.vertices).diagonal();
-  Json entry = {{"name", building.name},
-                {"given_name", shown_name(building)},
-                {"source", building.source},
-                {"pivot", {world.x(), world.y(), world.z()}},
-                {"bounding_sphere_diameter", diameter},
-                {"levels", Json::array()}};
+  OrderedJson entry = {{"name", building.name},
+                       {"given_name", shown_name(building)},
+                       {"source", building.source},
+                       {"pivot", {world.x(), world.y(), world.z()}},
+                       {"bounding_sphere_diameter", diameter},
+                       {"levels", OrderedJson::array()}};
   for (std::size_t lod = 0; lod < levels.size(); ++lod) {
     const double rounding = level_grid(*levels[lod], pivot, lod == 0, options).error();
-    Json level = level_json(building, lod, *levels[lod], rounding, diameter, options.switching);
+    OrderedJson level =
+        level_json(building, lod, *levels[lod], rounding, diameter, options.switching);
     if (lod > 0)  // strictly apart, so that importers keep every level
       level["screen_size"] = std::min(level["screen_size"].get<double>(),
                                       kFall * entry["levels"].back()["screen_size"].get<double>());
     entry["levels"].push_back(level);
   }
-  return entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return entry.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
@@ -158,9 +160,9 @@ Encoded encode_lods_json(const std::vector<ExportBuilding>& buildings,
 }
 
 Encoded encode_lods_json(const std::vector<std::string>& entries, const EngineOptions& options) {
-  Json list = Json::array();
-  for (const std::string& entry : entries) list.push_back(Json::parse(entry));
-  Json json;
+  OrderedJson list = OrderedJson::array();
+  for (const std::string& entry : entries) list.push_back(OrderedJson::parse(entry));
+  OrderedJson json;
   json["about"] =
       "LOD0 is the finest. A level is shown from switch_distance (metres) on, where a pixel covers "
       "gsd metres, or where the bounding sphere's diameter is at most screen_size of the "
@@ -171,7 +173,8 @@ Encoded encode_lods_json(const std::vector<std::string>& entries, const EngineOp
   json["viewport_height"] = options.switching.viewport_height;
   json["fov_y_deg"] = options.switching.fov_y_deg;
   json["buildings"] = list;
-  return {"engine/lods.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"};
+  return {"engine/lods.json",
+          json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n"};
 }
 
 }  // namespace colod

@@ -11,7 +11,7 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -55,8 +55,8 @@ std::vector<Level> plan_levels(const ExportBuilding& building, const GlbOptions&
   return levels;
 }
 
-Json node_of(const ExportBuilding& building, const Level& level, std::size_t lod) {
-  Json node;
+OrderedJson node_of(const ExportBuilding& building, const Level& level, std::size_t lod) {
+  OrderedJson node;
   node["name"] = shown_name(building) + "_LOD" + std::to_string(lod);
   node["mesh"] = level.mesh;
   node["extras"] = {{"building", building.name},
@@ -87,14 +87,14 @@ BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions
     const FlatMesh flat =
         flatten(level.level->mesh, Vec3::Zero(), level.grid, static_cast<int>(lod), look);
     level.faces = flat.triangles.size();
-    Json mesh;
+    OrderedJson mesh;
     mesh["name"] = shown_name(building) + "_LOD" + std::to_string(lod);
     const std::size_t before = document.binary.size();
-    Json primitive = add_primitive(document, flat, level.grid, options.compression);
+    OrderedJson primitive = add_primitive(document, flat, level.grid, options.compression);
     bytes.push_back(document.binary.size() - before);
     primitive["extensions"]["EXT_mesh_features"] = feature_ids(levels.size());
     set_look(document, look, mesh["name"], primitive);
-    mesh["primitives"] = Json::array({primitive});
+    mesh["primitives"] = OrderedJson::array({primitive});
     level.mesh = static_cast<int>(document.json["meshes"].size());
     document.json["meshes"].push_back(mesh);
   }
@@ -105,12 +105,12 @@ BuildingGlb encode_building_glb(const ExportBuilding& building, const GlbOptions
         feature_of(building, *levels[lod].level, levels[lod].deviation, levels[lod].faces));
   }
   add_features(document, features);
-  Json& root = document.json["nodes"][0];
+  OrderedJson& root = document.json["nodes"][0];
   const double diameter = bounding_box(levels[0].level->mesh.vertices).diagonal();
   root["extras"]["MSFT_screencoverage"] =
       screen_coverage(levels, diameter, options.switching.viewport_height);
   if (levels.size() > 1) {
-    Json ids = Json::array();
+    OrderedJson ids = OrderedJson::array();
     for (std::size_t lod = 1; lod < levels.size(); ++lod) ids.push_back(lod);
     root["extensions"]["MSFT_lod"]["ids"] = ids;
     document.json["extensionsUsed"].push_back("MSFT_lod");

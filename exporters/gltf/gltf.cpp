@@ -14,7 +14,7 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -26,13 +26,13 @@ void pad(std::string& bytes, std::size_t multiple, char with) {
   while (bytes.size() % multiple != 0) bytes += with;
 }
 
-void name_extension(Json& list, const std::string& extension) {
+void name_extension(OrderedJson& list, const std::string& extension) {
   if (std::find(list.begin(), list.end(), extension) == list.end()) list.push_back(extension);
 }
 
 int add_accessor(GltfDocument& document, ComponentType component, const char* type,
                  std::size_t count, int view = -1) {
-  Json accessor;
+  OrderedJson accessor;
   if (view >= 0) accessor["bufferView"] = view;
   accessor["componentType"] = static_cast<int>(component);
   accessor["type"] = type;
@@ -41,7 +41,7 @@ int add_accessor(GltfDocument& document, ComponentType component, const char* ty
   return static_cast<int>(document.json["accessors"].size()) - 1;
 }
 
-Json as_array(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+OrderedJson as_array(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 void set_bounds(GltfDocument& document, int accessor, const Box& box) {
   document.json["accessors"][accessor]["min"] = as_array(box.min);
@@ -59,11 +59,11 @@ void put_color(std::string& bytes, const Rgb& rgb) {
   for (const std::uint16_t v : linear_color(rgb)) put(bytes, v);
 }
 
-Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationGrid& grid,
-               Box& box) {
+OrderedJson add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationGrid& grid,
+                      Box& box) {
   const DracoResult draco = encode_draco(mesh, grid);
   box = {draco.min, draco.max};
-  Json extension, attributes;
+  OrderedJson extension, attributes;
   extension["bufferView"] = add_buffer_view(document, draco.bytes);
   extension["attributes"] = {{"POSITION", draco.position_id}, {"NORMAL", draco.normal_id}};
   attributes["POSITION"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
@@ -81,7 +81,7 @@ Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationG
   extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
   attributes["_FEATURE_ID_0"] =
       add_accessor(document, most > kMaxShort ? kFloat : kUnsignedShort, "SCALAR", draco.vertices);
-  Json primitive;
+  OrderedJson primitive;
   primitive["attributes"] = attributes;
   primitive["indices"] =
       add_accessor(document, draco.vertices > kMaxShort ? kUnsignedInt : kUnsignedShort, "SCALAR",
@@ -90,7 +90,7 @@ Json add_draco(GltfDocument& document, const FlatMesh& mesh, const QuantizationG
   return primitive;
 }
 
-void add_plain_look(GltfDocument& document, const FlatMesh& mesh, Json& attributes) {
+void add_plain_look(GltfDocument& document, const FlatMesh& mesh, OrderedJson& attributes) {
   std::string uvs, colors;
   for (const Vec2f& uv : mesh.uvs) put(uvs, uv.x()), put(uvs, uv.y());
   for (const Rgb& rgb : mesh.colors) put_color(colors, rgb);
@@ -103,7 +103,7 @@ void add_plain_look(GltfDocument& document, const FlatMesh& mesh, Json& attribut
         add_colors(document, n, add_buffer_view(document, colors, kArrayBuffer));
 }
 
-Json add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
+OrderedJson add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   std::string indices, positions, normals, ids;
   const bool is_long = mesh.positions.size() > kMaxShort;
   for (const Face& f : mesh.triangles)
@@ -118,7 +118,7 @@ Json add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
     for (int k = 0; k < 3; ++k) put(normals, static_cast<float>(n[k]));
   for (const std::uint32_t id : mesh.feature_ids) put(ids, static_cast<float>(id));
   const std::size_t n = mesh.positions.size();
-  Json primitive, attributes;
+  OrderedJson primitive, attributes;
   const int index_view = add_buffer_view(document, indices, kElementArrayBuffer);
   attributes["POSITION"] =
       add_accessor(document, kFloat, "VEC3", n, add_buffer_view(document, positions, kArrayBuffer));
@@ -146,7 +146,7 @@ int add_packed_view(GltfDocument& document, const Stream& stream, const std::str
                     const char* mode) {
   pad(document.binary, 8, '\0');
   document.unpacked_bytes = (document.unpacked_bytes + 7) / 8 * 8;
-  Json view = {
+  OrderedJson view = {
       {"buffer", 1}, {"byteOffset", document.unpacked_bytes}, {"byteLength", stream.bytes.size()}};
   if (stream.target == kArrayBuffer) view["byteStride"] = stream.stride;
   view["target"] = stream.target;
@@ -169,7 +169,7 @@ int add_packed(GltfDocument& document, const Stream& stream) {
 
 /// Coordinates in steps of 1/65535, a sixteenth of a texel of the largest atlas.
 void add_packed_look(GltfDocument& document, const FlatMesh& mesh,
-                     const std::vector<std::uint32_t>& order, Json& attributes) {
+                     const std::vector<std::uint32_t>& order, OrderedJson& attributes) {
   Stream uvs{{}, 4}, colors{{}, 8};
   for (const std::uint32_t v : order) {
     if (!mesh.uvs.empty())
@@ -186,7 +186,7 @@ void add_packed_look(GltfDocument& document, const FlatMesh& mesh,
     attributes["COLOR_0"] = add_colors(document, order.size(), add_packed(document, colors));
 }
 
-Json add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
+OrderedJson add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   std::vector<std::uint32_t> indices, order;
   for (const Face& f : mesh.triangles)
     for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
@@ -202,7 +202,7 @@ Json add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
     put(normals.bytes, std::int8_t{0});
     put(ids.bytes, static_cast<float>(mesh.feature_ids[v]));
   }
-  Json primitive, attributes;
+  OrderedJson primitive, attributes;
   const int index_view = add_packed_view(
       document, triangles, encode_meshopt_indices(indices, order.size()), "TRIANGLES");
   attributes["POSITION"] =
@@ -254,30 +254,31 @@ GltfDocument start_gltf() {
   GltfDocument document;
   document.json["asset"] = {{"version", "2.0"}, {"generator", "colod"}};
   document.json["scene"] = 0;
-  document.json["scenes"] = Json::array({{{"nodes", {0}}}});
+  document.json["scenes"] = OrderedJson::array({{{"nodes", {0}}}});
   for (const char* key : {"nodes", "meshes", "accessors", "bufferViews"})
-    document.json[key] = Json::array();
-  document.json["materials"] = Json::array({{{"name", "plain"},
-                                             {"pbrMetallicRoughness",
-                                              {{"baseColorFactor", {0.8, 0.8, 0.8, 1.0}},
-                                               {"metallicFactor", 0},
-                                               {"roughnessFactor", 1}}}}});
+    document.json[key] = OrderedJson::array();
+  document.json["materials"] = OrderedJson::array({{{"name", "plain"},
+                                                    {"pbrMetallicRoughness",
+                                                     {{"baseColorFactor", {0.8, 0.8, 0.8, 1.0}},
+                                                      {"metallicFactor", 0},
+                                                      {"roughnessFactor", 1}}}}});
   return document;
 }
 
 int add_buffer_view(GltfDocument& document, const std::string& bytes, int target) {
   pad(document.binary, 8, '\0');
-  Json view = {{"buffer", 0}, {"byteOffset", document.binary.size()}, {"byteLength", bytes.size()}};
+  OrderedJson view = {
+      {"buffer", 0}, {"byteOffset", document.binary.size()}, {"byteLength", bytes.size()}};
   if (target != 0) view["target"] = target;
   document.binary += bytes;
   document.json["bufferViews"].push_back(view);
   return static_cast<int>(document.json["bufferViews"].size()) - 1;
 }
 
-Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const QuantizationGrid& grid,
-                   Compression compression, Box* box) {
+OrderedJson add_primitive(GltfDocument& document, const FlatMesh& mesh,
+                          const QuantizationGrid& grid, Compression compression, Box* box) {
   Box seen;
-  Json primitive;
+  OrderedJson primitive;
   switch (compression) {
     case Compression::kNone:
       primitive = add_plain(document, mesh, seen);
@@ -299,23 +300,23 @@ Json add_primitive(GltfDocument& document, const FlatMesh& mesh, const Quantizat
 
 namespace {
 
-Json dull(const std::string& name) {
+OrderedJson dull(const std::string& name) {
   return {{"name", name},
           {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}};
 }
 
 /// A material of baked light.
-Json unlit(GltfDocument& document, const std::string& name) {
+OrderedJson unlit(GltfDocument& document, const std::string& name) {
   name_extension(document.json["extensionsUsed"], "KHR_materials_unlit");
-  Json material = dull(name);
-  material["extensions"]["KHR_materials_unlit"] = Json::object();
+  OrderedJson material = dull(name);
+  material["extensions"]["KHR_materials_unlit"] = OrderedJson::object();
   return material;
 }
 
 /// Its number.
-int add_material(GltfDocument& document, Json material) {
-  Json& all = document.json["materials"];
-  if (all.size() == 1 && all[0]["name"] == "plain") all = Json::array();
+int add_material(GltfDocument& document, OrderedJson material) {
+  OrderedJson& all = document.json["materials"];
+  if (all.size() == 1 && all[0]["name"] == "plain") all = OrderedJson::array();
   if (!all.empty() && all.back() == material) return static_cast<int>(all.size()) - 1;
   all.push_back(std::move(material));
   return static_cast<int>(all.size()) - 1;
@@ -335,7 +336,7 @@ const char* extension_for(ImageFormat format) {
 
 /// Its number.
 std::size_t add_image(GltfDocument& document, const std::string& bytes, ImageFormat format) {
-  Json& images = document.json["images"];
+  OrderedJson& images = document.json["images"];
   images.push_back(
       {{"bufferView", add_buffer_view(document, bytes)}, {"mimeType", mime_of(format)}});
   return images.size() - 1;
@@ -343,10 +344,10 @@ std::size_t add_image(GltfDocument& document, const std::string& bytes, ImageFor
 
 int add_texture(GltfDocument& document, const std::string& name, const LevelLook& look) {
   constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;
-  Json& json = document.json;
-  json["samplers"] = Json::array(
+  OrderedJson& json = document.json;
+  json["samplers"] = OrderedJson::array(
       {{{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
-  Json texture = {{"sampler", 0}};
+  OrderedJson texture = {{"sampler", 0}};
   const std::size_t image = add_image(document, look.image, look.format);
   if (const char* extension = extension_for(look.format)) {
     texture["extensions"][extension]["source"] = image;
@@ -361,7 +362,7 @@ int add_texture(GltfDocument& document, const std::string& name, const LevelLook
   }
   json["textures"].push_back(texture);
   const std::size_t number = json["textures"].size() - 1;
-  Json material = look.normals.empty() ? unlit(document, name) : dull(name);
+  OrderedJson material = look.normals.empty() ? unlit(document, name) : dull(name);
   material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = number;
   if (!look.normals.empty()) {
     json["textures"].push_back(
@@ -374,7 +375,7 @@ int add_texture(GltfDocument& document, const std::string& name, const LevelLook
 }  // namespace
 
 void set_look(GltfDocument& document, const LevelLook& look, const std::string& name,
-              Json& primitive) {
+              OrderedJson& primitive) {
   if (look.has_texture())
     primitive["material"] = add_texture(document, name, look);
   else if (!look.facet_colors.empty())
@@ -383,13 +384,13 @@ void set_look(GltfDocument& document, const LevelLook& look, const std::string& 
 
 std::string finish_glb(GltfDocument document) {
   pad(document.binary, 4, '\0');
-  document.json["buffers"] = Json::array({{{"byteLength", document.binary.size()}}});
+  document.json["buffers"] = OrderedJson::array({{{"byteLength", document.binary.size()}}});
   if (document.unpacked_bytes > 0) {
-    Json stand_in = {{"byteLength", document.unpacked_bytes}};
+    OrderedJson stand_in = {{"byteLength", document.unpacked_bytes}};
     stand_in["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
     document.json["buffers"].push_back(stand_in);
   }
-  std::string json = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string json = document.json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   pad(json, 4, ' ');
   std::string glb = "glTF";
   put(glb, std::uint32_t{2});

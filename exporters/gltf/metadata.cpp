@@ -7,17 +7,18 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
 /// File names may be in any encoding, strings of a property table only in UTF-8.
 std::string as_utf8(const std::string& text) {
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))
+  return OrderedJson::parse(
+             OrderedJson(text).dump(-1, ' ', false, OrderedJson::error_handler_t::replace))
       .get<std::string>();
 }
 
-Json string_column(GltfDocument& document, const std::vector<std::string>& values) {
+OrderedJson string_column(GltfDocument& document, const std::vector<std::string>& values) {
   std::string bytes, offsets;
   for (const std::string& value : values) {
     put(offsets, static_cast<std::uint32_t>(bytes.size()));
@@ -25,13 +26,13 @@ Json string_column(GltfDocument& document, const std::vector<std::string>& value
   }
   put(offsets, static_cast<std::uint32_t>(bytes.size()));
   if (bytes.empty()) bytes = std::string(1, '\0');  // a buffer view must not be empty
-  Json column;
+  OrderedJson column;
   column["values"] = add_buffer_view(document, bytes);
   column["stringOffsets"] = add_buffer_view(document, offsets);
   return column;
 }
 
-Json scalar(const char* type) { return {{"type", "SCALAR"}, {"componentType", type}}; }
+OrderedJson scalar(const char* type) { return {{"type", "SCALAR"}, {"componentType", type}}; }
 
 /// The name of an attribute as an id of a schema: letters, digits and `_`, no other column's.
 std::string column_id(const std::string& name) {
@@ -47,7 +48,7 @@ std::string column_id(const std::string& name) {
 
 /// Columns of attributes: id and name, in the order in which features have them.
 std::vector<std::pair<std::string, std::string>> attribute_columns(
-    const std::vector<Feature>& features, const Json& others) {
+    const std::vector<Feature>& features, const OrderedJson& others) {
   std::vector<std::pair<std::string, std::string>> out;
   const auto is_taken = [&](const std::string& id) {
     return others.contains(id) ||
@@ -71,8 +72,8 @@ std::string value_of(const Feature& feature, const std::string& name) {
   return "";
 }
 
-Json schema() {
-  Json properties;
+OrderedJson schema() {
+  OrderedJson properties;
   properties["name"] = {{"type", "STRING"}};
   properties["layer"] = scalar("INT16");
   properties["coarsest_layer"] = scalar("INT16");
@@ -81,7 +82,7 @@ Json schema() {
   properties["source"] = {{"type", "STRING"}};
   properties["given_name"] = {{"type", "STRING"}};
   properties["faces"] = scalar("UINT32");
-  Json out;
+  OrderedJson out;
   out["id"] = "colod";
   out["classes"]["building"]["properties"] = properties;
   return out;
@@ -106,14 +107,14 @@ Feature feature_of(const ExportBuilding& building, const ExportLevel& level, dou
           building.attributes};
 }
 
-Json switching_json(const SwitchFacts& facts) {
-  Json json = {{"measure", facts.measure},
-               {"scope", facts.scope},
-               {"visualError", facts.visual_error},
-               {"pixelError", facts.pixel_error},
-               {"share", facts.share},
-               {"viewportHeight", facts.viewport_height},
-               {"fovYDeg", facts.fov_y_deg}};
+OrderedJson switching_json(const SwitchFacts& facts) {
+  OrderedJson json = {{"measure", facts.measure},
+                      {"scope", facts.scope},
+                      {"visualError", facts.visual_error},
+                      {"pixelError", facts.pixel_error},
+                      {"share", facts.share},
+                      {"viewportHeight", facts.viewport_height},
+                      {"fovYDeg", facts.fov_y_deg}};
   for (std::size_t k = 0; k < facts.layer_gsd.size(); ++k)
     json["layers"].push_back({{"layer", k}, {"gsd", facts.layer_gsd[k]}});
   return json;
@@ -132,7 +133,7 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
     put(deviations, static_cast<float>(f.deviation));
     put(faces, static_cast<std::uint32_t>(f.faces));
   }
-  Json table = {{"class", "building"}, {"count", features.size()}};
+  OrderedJson table = {{"class", "building"}, {"count", features.size()}};
   table["properties"]["name"] = string_column(document, names);
   table["properties"]["layer"]["values"] = add_buffer_view(document, layers);
   table["properties"]["coarsest_layer"]["values"] = add_buffer_view(document, coarsest);
@@ -141,8 +142,8 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
   table["properties"]["source"] = string_column(document, sources);
   table["properties"]["given_name"] = string_column(document, given_names);
   table["properties"]["faces"]["values"] = add_buffer_view(document, faces);
-  Json described = schema();
-  Json& columns = described["classes"]["building"]["properties"];
+  OrderedJson described = schema();
+  OrderedJson& columns = described["classes"]["building"]["properties"];
   for (const auto& [id, name] : attribute_columns(features, columns)) {
     std::vector<std::string> values;
     for (const Feature& f : features) values.push_back(value_of(f, name));
@@ -150,15 +151,15 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
     table["properties"][id] = string_column(document, values);
   }
   document.json["extensions"]["EXT_structural_metadata"] = {
-      {"schema", described}, {"propertyTables", Json::array({table})}};
+      {"schema", described}, {"propertyTables", OrderedJson::array({table})}};
   for (const char* name : {"EXT_mesh_features", "EXT_structural_metadata"})
     document.json["extensionsUsed"].push_back(name);
 }
 
-Json feature_ids(std::size_t count) {
-  Json out;
+OrderedJson feature_ids(std::size_t count) {
+  OrderedJson out;
   out["featureIds"] =
-      Json::array({{{"featureCount", count}, {"attribute", 0}, {"propertyTable", 0}}});
+      OrderedJson::array({{{"featureCount", count}, {"attribute", 0}, {"propertyTable", 0}}});
   return out;
 }
 

@@ -13,15 +13,15 @@
 namespace colod {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::string_view kMark = "<!--DATA-->";  ///< where the data go in the shell
 constexpr std::size_t kMostWarnings = 20, kMostCharacters = 400;
 
 /// Six digits are more than a page shows, and a third of the bytes.
-void round_numbers(Json& json) {
+void round_numbers(OrderedJson& json) {
   if (json.is_structured()) {
-    for (Json& item : json) round_numbers(item);
+    for (OrderedJson& item : json) round_numbers(item);
   } else if (json.is_number_float()) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", json.get<double>());
@@ -37,15 +37,15 @@ std::string cut(std::string text) {
   return text.substr(0, end) + " …";
 }
 
-void bound_texts(Json& building) {
-  Json& warnings = building["warnings"];
+void bound_texts(OrderedJson& building) {
+  OrderedJson& warnings = building["warnings"];
   const std::size_t count = warnings.size();
   if (count > kMostWarnings) {
     warnings.erase(warnings.begin() + kMostWarnings, warnings.end());
     warnings.push_back("and " + std::to_string(count - kMostWarnings) + " more: see report.json");
   }
-  for (Json& w : warnings) w = cut(w.get<std::string>());
-  for (Json& layer : building["layers"]) {
+  for (OrderedJson& w : warnings) w = cut(w.get<std::string>());
+  for (OrderedJson& layer : building["layers"]) {
     if (layer.contains("failure")) layer["failure"] = cut(layer["failure"].get<std::string>());
     if (layer.contains("looks")) layer["looks"].erase("worst");  // the pictures say where
   }
@@ -79,21 +79,21 @@ std::string pictures_json(const std::vector<std::vector<std::string>>& pictures)
 }
 
 /// The report as the page has it, building by building: each alone is parsed.
-std::string report_text(Json report, const HtmlReport& r) {
-  Json own = std::move(report["buildings"]);
+std::string report_text(OrderedJson report, const HtmlReport& r) {
+  OrderedJson own = std::move(report["buildings"]);
   std::string rows;
-  const auto add = [&](Json building) {
+  const auto add = [&](OrderedJson building) {
     bound_texts(building);
     round_numbers(building);
     rows += (rows.empty() ? "" : ",") + building.dump();
   };
-  for (Json& building : own) add(std::move(building));
-  for (std::size_t i = 0; i < r.buildings; ++i) add(Json::parse(r.building(i)));
-  report["buildings"] = Json::array();
+  for (OrderedJson& building : own) add(std::move(building));
+  for (std::size_t i = 0; i < r.buildings; ++i) add(OrderedJson::parse(r.building(i)));
+  report["buildings"] = OrderedJson::array();
   round_numbers(report);
   std::string text = "{";
   for (const auto& [key, value] : report.items())
-    text += (text.size() > 1 ? "," : "") + Json(key).dump() + ":" +
+    text += (text.size() > 1 ? "," : "") + OrderedJson(key).dump() + ":" +
             (key == "buildings" ? "[" + rows + "]" : value.dump());
   return text + "}";
 }
@@ -101,8 +101,8 @@ std::string report_text(Json report, const HtmlReport& r) {
 }  // namespace
 
 Encoded encode_html_report(const HtmlReport& r) {
-  Json report = Json::parse(r.report);
-  Json parts = r.parts.empty() ? Json::object() : Json::parse(r.parts);
+  OrderedJson report = OrderedJson::parse(r.report);
+  OrderedJson parts = r.parts.empty() ? OrderedJson::object() : OrderedJson::parse(r.parts);
   parts["colors"] = r.layer_colors;
   round_numbers(parts);
   const std::string_view shell = kHtmlReportShell;

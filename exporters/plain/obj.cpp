@@ -4,28 +4,20 @@
 #include "obj.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <numbers>
 
+#include "core/bytes.h"
+
 namespace colod {
-
-static_assert(std::endian::native == std::endian::little, "put() copies the host's bytes");
-
 namespace {
 
 template <typename T>
 void print(std::string& out, T value) {
   char text[32];
   out.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
-
-template <typename T>
-void put(std::string& out, T value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// Numbers of a look's texture coordinates: one a vertex of a facet.

@@ -11,11 +11,11 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kStandInShare = 0.02;  // of the least error of a tile's stand-ins
+constexpr double kStandInError = 0.02;  // of the least error of a tile's stand-ins
 constexpr std::size_t kMostNames = 4;   // of buildings behind one stand-in, in its name
 
 Feature feature_of(const TilesetInput& input, const TilePart& part, double rounding,
@@ -69,7 +69,7 @@ double rounding_bound(const PlannedTile& tile, const TilesOptions& options) {
   if (tile.is_finest) return kFinestShare * options.quantization;
   double least = std::numeric_limits<double>::infinity();
   for (const TilePart& part : tile.parts) least = std::min(least, part.level ? 0 : part.deviation);
-  return std::max(options.quantization, kStandInShare * least);
+  return std::max(options.quantization, kStandInError * least);
 }
 
 TileLook look_of(const TilesetInput& input, const PlannedTile& tile) {
@@ -82,12 +82,13 @@ TileLook look_of(const TilesetInput& input, const PlannedTile& tile) {
 
 }  // namespace
 
-Json vec_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+OrderedJson vec_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json identity_json(const std::string& name, const std::string& given_name, const TilePart& part) {
+OrderedJson identity_json(const std::string& name, const std::string& given_name,
+                          const TilePart& part) {
   const int finest = part.level ? part.level->layers.back() : -1;
   const int coarsest = part.level ? part.level->layers.front() : -1;
-  Json json = {{"building", name}, {"layer", finest}, {"coarsestLayer", coarsest}};
+  OrderedJson json = {{"building", name}, {"layer", finest}, {"coarsestLayer", coarsest}};
   if (given_name != name) json["given_name"] = given_name;
   return json;
 }
@@ -109,13 +110,13 @@ void encode_content(const TilesetInput& input, const TileFrame& frame, Content& 
   if (!frame.is_on_earth())  // z up, metres; on Earth a tile's transform says it
     document.json["asset"]["extras"]["origin"] = vec_json(frame.origin());
   Box seen;
-  Json primitive = add_primitive(document, merged, grid, input.options.compression, &seen);
+  OrderedJson primitive = add_primitive(document, merged, grid, input.options.compression, &seen);
   set_look(document, look.whole, tile.name, primitive);
   primitive["extensions"]["EXT_mesh_features"] = feature_ids(features.size());
-  Json node = {{"name", tile.name}, {"mesh", 0}};
+  OrderedJson node = {{"name", tile.name}, {"mesh", 0}};
   if (features.size() == 1)
     node["extras"] = identity_json(features[0].name, features[0].given_name, tile.parts[0]);
-  document.json["meshes"].push_back({{"primitives", Json::array({primitive})}});
+  document.json["meshes"].push_back({{"primitives", OrderedJson::array({primitive})}});
   document.json["nodes"].push_back(node);
   add_features(document, features);
   content.file.bytes = finish_glb(std::move(document));

@@ -12,7 +12,7 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -59,7 +59,7 @@ FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& ro
   return out;
 }
 
-LevelLook look_of(const ContextMesh& mesh, int image) {
+LevelLook level_look(const ContextMesh& mesh, int image) {
   LevelLook look;
   if (image < 0) {
     look.facet_colors = {Rgb{}};  // that there are colours
@@ -86,13 +86,13 @@ std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& 
     const Vec3& o = frame.origin();
     document.json["asset"]["extras"]["origin"] = {o.x(), o.y(), o.z()};
   }
-  Json primitives = Json::array();
+  OrderedJson primitives = OrderedJson::array();
   for (int image = kUntextured; image < static_cast<int>(mesh.images.size()); ++image) {
     const FlatMesh flat = flat_of(mesh, image, rounded);
     if (flat.triangles.empty()) continue;
     Box seen;
-    Json primitive = add_primitive(document, flat, grid, compression, &seen);
-    set_look(document, look_of(mesh, image), name + "-" + std::to_string(image), primitive);
+    OrderedJson primitive = add_primitive(document, flat, grid, compression, &seen);
+    set_look(document, level_look(mesh, image), name + "-" + std::to_string(image), primitive);
     primitives.push_back(std::move(primitive));
     box.extend(from_gltf(seen.min)), box.extend(from_gltf(seen.max));
   }
@@ -118,7 +118,7 @@ std::vector<ContextTile> encode_context(const ContextTiles& context, const TileF
     is_shown[i] = !file.bytes.empty();
     if (is_shown[i]) take(file);
   });
-  std::vector<Json> children(count, Json::array());
+  std::vector<OrderedJson> children(count, OrderedJson::array());
   std::vector<ContextTile> tops;
   for (std::size_t i = count; i-- > 0;) {
     ContextTile& tile = tiles[i];

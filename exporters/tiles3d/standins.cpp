@@ -187,8 +187,8 @@ double cost(const StandInBox& a, const StandInBox& b) {
 }
 
 /// `coarsest`: the gsd of the level before which the box stands.
-double gsd_of(const StandInBox& box, const Mesh& finest, double coarsest,
-              const SwitchFacts& facts) {
+double stand_in_gsd(const StandInBox& box, const Mesh& finest, double coarsest,
+                    const SwitchFacts& facts) {
   const double least = kLeastStep * coarsest;
   if (facts.measure != "visual") return std::max(least, box.error / facts.pixel_error);
   Mesh mesh = mesh_of(box).mesh();
@@ -224,7 +224,7 @@ StandInBox stand_in_for(const ExportBuilding& building, int index, const SwitchF
     }
     if (box.error < least) best = box, least = box.error;
   }
-  best.gsd = gsd_of(best, finest, building.levels.front().gsd, facts);
+  best.gsd = stand_in_gsd(best, finest, building.levels.front().gsd, facts);
   best.origin += building.origin;
   best.buildings = {index};
   return best;

@@ -19,7 +19,7 @@
 
 namespace colod {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -27,7 +27,7 @@ constexpr double kFarShare = 0.05;  // of the finest tiles' bytes, at the root
 
 /// A finished tile and what its parent must cover.
 struct Tile {
-  Json json;
+  OrderedJson json;
   Box box;  // z-up tile space, with all below
   double error = 0;
 };
@@ -65,15 +65,15 @@ std::string percent_encoded(const std::string& path) {
   return out;
 }
 
-Json start_tileset(const TilesOptions& options, const TileFrame& frame, Tile root) {
+OrderedJson start_tileset(const TilesOptions& options, const TileFrame& frame, Tile root) {
   const Placement& place = options.placement;
-  Json tileset;
+  OrderedJson tileset;
   tileset["asset"] = {{"version", "1.1"}, {"generator", "colod"}};
   tileset["asset"]["extras"] = {
       {"frame", place.to_ecef
                     ? "x, y, z (up) in metres as in the input; the transform leads to ECEF"
                     : "local: x, y, z (up) in metres as in the input, no place on Earth"},
-      {"crs", place.to_ecef ? Json(place.name) : Json(nullptr)},
+      {"crs", place.to_ecef ? OrderedJson(place.name) : OrderedJson(nullptr)},
       {"offset", vec_json(frame.origin())},
       {"targetSse", options.target_sse},
       {"switching", switching_json(options.switching)}};
@@ -84,8 +84,8 @@ Json start_tileset(const TilesOptions& options, const TileFrame& frame, Tile roo
   return tileset;
 }
 
-std::string dumped(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string dumped(const OrderedJson& json) {
+  return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 /// At the middle of the parts' foot, to the metre.
@@ -106,8 +106,8 @@ Tile beside_context(const TilesOptions& o, const TileFrame& frame, Tile building
     files.push_back(file);
   };
   Tile root;
-  Json children = Json::array();
-  const auto add = [&](Json json, const Box& box, double error) {
+  OrderedJson children = OrderedJson::array();
+  const auto add = [&](OrderedJson json, const Box& box, double error) {
     root.box.extend(box);
     root.error = std::max(root.error, kRise * error);
     children.push_back(std::move(json));
@@ -309,7 +309,7 @@ class TilesetWriter {
     const std::string uri = percent_encoded(content.file.path.substr(file.folder.size()));
     const std::size_t place = listed.size();
     if (is_listed()) listed.emplace_back();
-    Json children = Json::array();
+    OrderedJson children = OrderedJson::array();
     for (const PlannedTile& below : planned.children) {
       Tile child = assemble(file, below, next, listed);
       tile.box.extend(child.box);

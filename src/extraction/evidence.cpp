@@ -54,7 +54,7 @@ std::vector<Vec3> sample_cell(const Partition& partition, int cell,
   return samples;
 }
 
-constexpr std::array<double, 1> kLevel = {0};  // degrees of elevation: the paper's rays
+constexpr std::array<double, 1> kElevations_deg = {0};  // degrees of elevation: the paper's rays
 
 struct Tally {
   double inside = 0, outside = 0;  ///< shares of the rays
@@ -75,7 +75,7 @@ class Voter {
       : sight_(sight),
         is_on_rings_(options.is_on_rings),
         around_(options.is_on_rings ? ring_directions(options.nr, kElevations)
-                                    : ring_directions(options.nr, kLevel)),
+                                    : ring_directions(options.nr, kElevations_deg)),
         steep_(ring_directions(std::max(8, options.nr / 5), kSteep)) {}
 
   Vote vote(const Vec3& point) const {

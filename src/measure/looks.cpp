@@ -34,7 +34,7 @@ constexpr double kMostNoise = 0.5;            // metres
 constexpr std::size_t kLeastNeighbours = 8;
 constexpr double kSupport = 0.5, kSupportShare = 0.02;  // metres, of the diagonal
 constexpr double kSpacings = 2;                         // of points: nearer is supported
-constexpr double kThin = 0.3;                           // metres
+constexpr double kThinSheet = 0.3;                      // metres
 constexpr double kOpposed = -0.866;   // cosine: a thin body's sides face apart by 150° or more
 constexpr double kFacing = 0.5;       // cosine: the source faces as the side does
 constexpr double kSheets = 0.01;      // metres of noise: what a person drew may be sheets
@@ -181,7 +181,7 @@ LookGauge::Impl::Impl(const Source& source, const Surface* known)
   measure_noise();
   const Box box = bounding_box(surface ? surface->mesh.vertices : samples);
   support = std::max(kSupport, kSupportShare * box.diagonal());
-  thin = std::max(kThin, looks.noise);
+  thin = std::max(kThinSheet, looks.noise);
   if (!surface) support = std::max(support, kSpacings * spacing_of_points());
   std::vector<Vec3> points = samples;
   if (surface)  // a top is no lower than its corners
@@ -305,6 +305,7 @@ void LookGauge::Impl::look_at_surface(const Mesh& m, const std::vector<int>& fac
   const double unit = surface_area(m) / std::max<double>(1, static_cast<double>(points.size()));
   l.flaps = unit * static_cast<double>(std::count(is_thin.begin(), is_thin.end(), 1));
   l.unsupported = unit * static_cast<double>(std::count(is_alone.begin(), is_alone.end(), 1));
+  for (std::size_t i = 0; i < points.size(); ++i) l.ragged += is_thin[i] || is_alone[i] ? unit : 0;
   l.worst[static_cast<int>(LookFault::kFlap)] = worst_place(points, is_thin, facet_of_face, unit);
   l.worst[static_cast<int>(LookFault::kUnsupported)] =
       worst_place(points, is_alone, facet_of_face, unit);
@@ -367,7 +368,8 @@ std::string looks_json(const Looks& l) {
                                  {"level_eaves", l.level_eaves},
                                  {"narrow", l.narrow},
                                  {"unsupported", l.unsupported},
-                                 {"flaps", l.flaps}};
+                                 {"flaps", l.flaps},
+                                 {"ragged", l.ragged}};
   json["worst"] = nlohmann::ordered_json::object();
   for (int i = 0; i < kPlacedFaults; ++i)
     if (const FaultPlace& w = l.worst[i]; w.size > 0)

@@ -35,6 +35,7 @@ struct Looks {
   int narrow = 0;          ///< facets narrower than the noise
   double unsupported = 0;  ///< m² that no source supports
   double flaps = 0;        ///< m² of thin bodies
+  double ragged = 0;       ///< m² that are either
   std::array<FaultPlace, kPlacedFaults> worst;  ///< by LookFault
 };
 
@@ -49,6 +50,11 @@ struct LookVerdict {
 /// length in no direction of the plan, 10 % of the eaves' not level; more triangles than the source
 /// has.
 LookVerdict judge_looks(const Looks& looks);
+
+/// Of the wall area: a finest layer with more of it ragged than this shows another thing than its
+/// source. Of 219 single buildings, which were looked at, the worst has 0.21 and the median 0.01; a
+/// tile with a beam between two scraps of walls has 0.35.
+constexpr double kMostRagged = 0.25;
 
 /// What is known of a source before any layer is looked at.
 struct SourceLooks {

@@ -1,5 +1,5 @@
 // Based on: own work.
-// Differs: paper rules measure, but refuse nothing and replace no layer.
+// Differs: paper rules measure, but refuse nothing.
 // Notation: none.
 #include "losses.h"
 
@@ -67,6 +67,17 @@ std::string describe(const LeftOut& l) {
   }
 }
 
+std::string describe_ragged(const Looks& looks) {
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "%.3g m2 of its finest layer stand where the source shows nothing or are thin sheets, %s as "
+      "much "
+      "as it has walls: is this a building, and whole? --scene scene takes it for a place",
+      looks.ragged, percent(looks.ragged / std::max(1e-9, looks.wall_area)).c_str());
+  return text;
+}
+
 }  // namespace
 
 Surface surface_of(const Building& b) {
@@ -76,22 +87,6 @@ Surface surface_of(const Building& b) {
     if (const int p = b.planes.plane_of_item[f]; p != kFloater && p != kAround)
       surface.faces.push_back(b.source.mesh.faces[f]);
   return surface;
-}
-
-const char* describe(StandIn reason) {
-  switch (reason) {
-    case StandIn::kNone:
-      return "";
-    case StandIn::kRicher:
-      return "came out richer than the next finer one and takes its mesh";
-    case StandIn::kInvented:
-      return "came out with most of its roofs and many walls far from the source: it stands "
-             "elsewhere, so that the next finer layer's mesh stands in";
-    case StandIn::kVolume:
-      return "came out with another volume than the finer ones, by more than a fifth: it lost a "
-             "part of the building or invented one, so that the next finer layer's mesh stands in";
-  }
-  return "";
 }
 
 void forget_losses(Building& b) {
@@ -118,22 +113,6 @@ void weigh_finest(const Surface& source, Building& b) {
   }
 }
 
-void replace_invented(const Surface& source, bool is_replaced, Building& b) {
-  std::vector<Mesh> meshes;
-  std::vector<Layer*> shown;
-  for (Layer& layer : b.layers)
-    if (layer.failure.empty()) meshes.push_back(layer.mesh.mesh()), shown.push_back(&layer);
-  if (shown.empty()) return;
-  const std::vector<InventedShare> shares = invented_shares(source, meshes);
-  for (std::size_t i = shown.size(); i-- > 0;) {
-    shown[i]->invented = shares[i].share;
-    if (!is_replaced || !shares[i].is_too_much || i + 1 == shown.size()) continue;
-    shown[i]->mesh = shown[i + 1]->mesh;
-    shown[i]->invented = shown[i + 1]->invented;
-    shown[i]->stand_in = StandIn::kInvented;
-  }
-}
-
 std::string judge_building(const Surface& source, const Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return "";
   const std::string why = judge_scene(survey_layer(source, b.layers.back().mesh, b.solid));
@@ -150,6 +129,7 @@ std::vector<std::string> loss_warnings(const Building& b) {
     return warning_weight(*x) > warning_weight(*y);
   });
   std::vector<std::string> warnings;
+  if (b.is_ragged()) warnings.push_back(describe_ragged(b.layers.back().looks));
   for (const LeftOut* l : heavy) warnings.push_back(describe(*l));
   return warnings;
 }

@@ -1,4 +1,4 @@
-// What a building's chain lost or invented: the measures between its last mesh and its report.
+// What a building lost on its way: the measures between its last mesh and its report.
 #pragma once
 
 #include "measure/solid.h"
@@ -17,17 +17,11 @@ void weigh_finest(const Surface& source, Building& building);
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
-/// Measures how much of each layer is invented; where it is too much (measure/scene_part.h) and
-/// `is_replaced`, the next finer layer's mesh stands in.
-void replace_invented(const Surface& source, bool is_replaced, Building& building);
-
 /// Why the finest layer is no building's (measure/scene_part.h); empty: it is one.
 std::string judge_building(const Surface& source, const Building& building);
 
-/// What happened to a layer whose mesh is another's, as a clause without its name.
-const char* describe(StandIn reason);
-
-/// Warnings of what was lost or left out over a stated share (scene/left_out.h), by falling share.
+/// Warnings of a ragged finest layer, and of what was lost or left out over a stated share
+/// (scene/left_out.h), by falling share.
 std::vector<std::string> loss_warnings(const Building& building);
 
 }  // namespace colod

@@ -18,6 +18,7 @@
 #include "scene/ground.h"
 #include "scene/hidden.h"
 #include "scene/left_out.h"
+#include "stand_ins.h"
 
 namespace colod {
 namespace {
@@ -121,38 +122,6 @@ void extract(Building& b, Layer& layer, const std::vector<RoundShape>& shapes,
   }
 }
 
-bool is_richer(const PolygonMesh& a, const PolygonMesh& b) {
-  return a.vertices.size() > b.vertices.size() || a.triangles.size() > b.triangles.size() ||
-         a.facets.size() > b.facets.size();
-}
-
-/// Why a coarser layer cannot stand before a finer one. The volume is asked first: what lost a wing
-/// may be richer as well.
-StandIn misfit(const PolygonMesh& coarse, const PolygonMesh& fine, bool is_volume_checked) {
-  const double volume = signed_volume(fine.mesh());
-  const double change = std::abs(signed_volume(coarse.mesh()) - volume);
-  if (is_volume_checked && change > kVolumeChange * volume) return StandIn::kVolume;
-  return is_richer(coarse, fine) ? StandIn::kRicher : StandIn::kNone;
-}
-
-/// Detail rises along the chain, and (Rule::kVolume) all layers enclose about the same building.
-void keep_chain_sound(Building& b, const Options& o) {
-  const bool is_volume_checked = o.rules.has(Rule::kVolume);
-  for (std::size_t k = b.layers.size() - 1; k-- > 0;) {
-    Layer &coarse = b.layers[k], &fine = b.layers[k + 1];
-    if (!coarse.failure.empty() || !fine.failure.empty()) continue;
-    coarse.stand_in = misfit(coarse.mesh, fine.mesh, is_volume_checked);
-    if (coarse.stand_in == StandIn::kNone && b.layers.back().failure.empty())
-      coarse.stand_in =
-          misfit(coarse.mesh, b.layers.back().mesh, is_volume_checked);  // changes add up
-    if (coarse.stand_in == StandIn::kNone) continue;
-    if (coarse.stand_in == StandIn::kRicher)
-      b.warnings.push_back("layer " + std::to_string(k) + " " + describe(coarse.stand_in));
-    coarse.mesh = fine.mesh;
-  }
-}
-
-/// From the building's frame to axes parallel to the world's.
 void unturn(PolygonMesh& mesh, const Frame& frame) {
   const Frame turn{Vec3::Zero(), frame.yaw};
   for (Vec3& v : mesh.vertices) v = turn.to_world(v);
@@ -259,8 +228,14 @@ bool is_failure(StandIn reason) {
   return reason == StandIn::kInvented || reason == StandIn::kVolume;
 }
 
+bool Building::is_ragged() const {
+  if (layers.empty() || !layers.back().failure.empty()) return false;
+  const Looks& looks = layers.back().looks;
+  return looks.ragged > kMostRagged * looks.wall_area;
+}
+
 bool Building::has_lost_shape() const {
-  return std::any_of(left_out.begin(), left_out.end(), is_loss) ||
+  return is_ragged() || std::any_of(left_out.begin(), left_out.end(), is_loss) ||
          std::any_of(layers.begin(), layers.end(),
                      [](const Layer& l) { return is_failure(l.stand_in); });
 }

@@ -98,7 +98,9 @@ struct Building {
   std::string failure;  ///< why the building has no layer at all; empty: it has
 
   bool has_failed() const;
-  /// Whether a body of it is gone, or a layer is another's for a failure: there is a mesh, but not
+  /// Whether too much of the finest layer has nothing of the source behind it (kMostRagged).
+  bool is_ragged() const;
+  /// That, or a body of it is gone, or a layer is another's for a failure: there is a mesh, but not
   /// all is well.
   bool has_lost_shape() const;
   /// That, or a texture is lost.

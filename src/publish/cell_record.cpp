@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "cbor.h"
 #include "core/error.h"
 
 namespace colod {
@@ -37,12 +38,6 @@ Json packed(const std::string& bytes) { return packed(bytes.data(), bytes.size()
 std::string text_of(const Json& json) {
   const auto& bytes = json.get_binary();
   return {bytes.begin(), bytes.end()};
-}
-
-std::string bytes_of(const Json& json) {
-  std::string bytes;
-  Json::to_cbor(json, bytes);
-  return bytes;
 }
 
 template <typename Read>
@@ -112,7 +107,7 @@ Tally tally_from(const Json& json) {
   return t;
 }
 
-Json building_json(const ExportBuilding& b) {
+Json packed_building(const ExportBuilding& b) {
   Json levels = Json::array(), attributes = Json::array();
   for (const ExportLevel& level : b.levels)
     levels.push_back(
@@ -150,16 +145,16 @@ std::string facts_of(const CellRecord& r) {
     messages.push_back({static_cast<int>(m.level), packed(m.text)});
   for (const PartFacts& p : r.parts) parts.push_back({p.layer, p.extent, p.area, p.is_flat});
   for (const WrittenFile& f : r.files) files.push_back({packed(f.path), f.bytes, f.hash});
-  return bytes_of({{"key", r.key},
-                   {"building", building_json(r.building)},
-                   {"path", packed(r.path)},
-                   {"outline", outline_json(r.outline)},
-                   {"not_in_tiles", packed(r.not_in_tiles)},
-                   {"tally", tally_json(r.tally)},
-                   {"messages", messages},
-                   {"parts", parts},
-                   {"files", files},
-                   {"pictures", r.pictures}});
+  return cbor_of({{"key", r.key},
+                  {"building", packed_building(r.building)},
+                  {"path", packed(r.path)},
+                  {"outline", outline_json(r.outline)},
+                  {"not_in_tiles", packed(r.not_in_tiles)},
+                  {"tally", tally_json(r.tally)},
+                  {"messages", messages},
+                  {"parts", parts},
+                  {"files", files},
+                  {"pictures", r.pictures}});
 }
 
 std::string level_bytes(const ExportLevel& level) {
@@ -174,25 +169,25 @@ std::string level_bytes(const ExportLevel& level) {
     }
   }
   const LevelLook& look = level.look;
-  return bytes_of({{"vertices", packed(level.mesh.vertices)},
-                   {"normals", packed(normals)},
-                   {"planes", packed(planes)},
-                   {"rings", packed(rings)},
-                   {"triangles", packed(level.mesh.triangles)},
-                   {"facet_of_triangle", packed(level.mesh.facet_of_triangle)},
-                   {"uvs", packed(look.uvs)},
-                   {"image", packed(look.image)},
-                   {"fallback", packed(look.fallback)},
-                   {"width", look.width},
-                   {"height", look.height},
-                   {"format", static_cast<int>(look.format)},
-                   {"quality", look.quality},
-                   {"has_fallback", look.has_fallback},
-                   {"raster_width", look.raster.width},
-                   {"raster_height", look.raster.height},
-                   {"rgb", packed(look.raster.rgb)},
-                   {"alpha", packed(look.raster.alpha)},
-                   {"facet_colors", packed(look.facet_colors)}});
+  return cbor_of({{"vertices", packed(level.mesh.vertices)},
+                  {"normals", packed(normals)},
+                  {"planes", packed(planes)},
+                  {"rings", packed(rings)},
+                  {"triangles", packed(level.mesh.triangles)},
+                  {"facet_of_triangle", packed(level.mesh.facet_of_triangle)},
+                  {"uvs", packed(look.uvs)},
+                  {"image", packed(look.image)},
+                  {"fallback", packed(look.fallback)},
+                  {"width", look.width},
+                  {"height", look.height},
+                  {"format", static_cast<int>(look.format)},
+                  {"quality", look.quality},
+                  {"has_fallback", look.has_fallback},
+                  {"raster_width", look.raster.width},
+                  {"raster_height", look.raster.height},
+                  {"rgb", packed(look.raster.rgb)},
+                  {"alpha", packed(look.raster.alpha)},
+                  {"facet_colors", packed(look.facet_colors)}});
 }
 
 void read_facets(const Json& json, PolygonMesh& mesh) {
@@ -245,14 +240,14 @@ Shelf::Pieces to_pieces(const CellRecord& record, const std::string& row, const 
   for (std::size_t i = 0; i < levels.size(); ++i) pieces[level_piece(i)] = level_bytes(levels[i]);
   if (!levels.empty()) {
     const CoarsestLook look = coarsest_look(levels.front());
-    pieces[kCoarsest] = bytes_of({{"vertices", packed(look.mesh.vertices)},
-                                  {"faces", packed(look.mesh.faces)},
-                                  {"facet_of_triangle", packed(look.facet_of_triangle)},
-                                  {"facet_colors", packed(look.facet_colors)}});
+    pieces[kCoarsest] = cbor_of({{"vertices", packed(look.mesh.vertices)},
+                                 {"faces", packed(look.mesh.faces)},
+                                 {"facet_of_triangle", packed(look.facet_of_triangle)},
+                                 {"facet_colors", packed(look.facet_colors)}});
   }
   Json list = Json::array();
   for (const Descriptor& d : descriptors) list.push_back(descriptor_json(d));
-  pieces[kDescriptors] = bytes_of(list);
+  pieces[kDescriptors] = cbor_of(list);
   for (std::size_t i = 0; i < pictures.size(); ++i) pieces[picture_piece(i)] = pictures[i];
   return pieces;
 }

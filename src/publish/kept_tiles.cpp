@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cbor.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 
@@ -21,7 +22,7 @@ Json facts_json(const TileFacts& f) {
           f.box.max.y(), f.box.max.z(), f.gsd,         f.bytes,       f.hash};
 }
 
-TileFacts facts_of(const Json& j) {
+TileFacts tile_facts(const Json& j) {
   const auto place = [&](std::size_t i) {
     return Vec3(j.at(i).get<double>(), j.at(i + 1).get<double>(), j.at(i + 2).get<double>());
   };
@@ -40,12 +41,6 @@ T read_or_nothing(const std::string& piece, const Read& read) {
   } catch (const Json::exception&) {
     return {};
   }
-}
-
-std::string bytes_of(const Json& json) {
-  std::string bytes;
-  Json::to_cbor(json, bytes);
-  return bytes;
 }
 
 void tell_names(Level level, const std::string& what, const std::vector<std::string>& names,
@@ -139,7 +134,7 @@ void MergeMemory::enter(const std::string& folder) {
   const Json json = read_or_nothing<Json>(shelf_.get(folder, kTiles), [](Json all) { return all; });
   std::vector<std::pair<std::string, TileFacts>> known;
   try {
-    for (const auto& [path, own] : json.items()) known.emplace_back(path, facts_of(own));
+    for (const auto& [path, own] : json.items()) known.emplace_back(path, tile_facts(own));
   } catch (const Json::exception&) {
     known.clear();
   }
@@ -158,7 +153,7 @@ void MergeMemory::enter(const std::string& folder) {
 void MergeMemory::put(const std::string& folder, const std::map<std::string, TileFacts>& facts) {
   Json json = Json::object();
   for (const auto& [path, own] : facts) json[path] = facts_json(own);
-  shelf_.put(folder, {{kTiles, bytes_of(json)}});
+  shelf_.put(folder, {{kTiles, cbor_of(json)}});
 }
 
 void MergeMemory::finish(const std::vector<const std::string*>& names,
@@ -180,7 +175,7 @@ void MergeMemory::finish(const std::vector<const std::string*>& names,
     std::map<std::string, std::string> keys;
     for (const std::size_t i : own) keys[*names[i]] = hex_of(tiles_.keys[i]);
     changes.compare(before, keys);
-    if (before != keys) shelf_.put(piece, {{kBuildings, bytes_of(Json(keys))}});
+    if (before != keys) shelf_.put(piece, {{kBuildings, cbor_of(Json(keys))}});
     if (!own.empty()) folders_.push_back(piece);
   }
   changes.tell_all(tell);

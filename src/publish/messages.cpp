@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "pipeline/losses.h"
+#include "pipeline/stand_ins.h"
 
 namespace colod {
 

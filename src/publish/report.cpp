@@ -8,16 +8,17 @@
 
 #include "exporters/exporter.h"
 #include "pipeline/losses.h"
+#include "pipeline/stand_ins.h"
 #include "rules/rules.h"
 #include "scene/left_out.h"
 
 namespace colod {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json parameters_json(const Options& options) {
-  Json json;
+OrderedJson parameters_json(const Options& options) {
+  OrderedJson json;
   json["rules"] = options.rules.is_none() ? "paper" : "robust";
   if (!options.rules.is_none() && !options.rules.is_all()) json["without"] = ids_off(options.rules);
   json["visibility"] = name_of(options.visibility);
@@ -32,25 +33,25 @@ Json parameters_json(const Options& options) {
 }
 
 /// A measure that may be unknown, which is negative inside the program and null in the report.
-Json known(double value) { return value < 0 ? Json() : Json(value); }
+OrderedJson known(double value) { return value < 0 ? OrderedJson() : OrderedJson(value); }
 
 /// As `colod eval` prints them, places in the world's frame.
-Json looks_in_world(Looks looks, const Vec3& origin) {
+OrderedJson looks_in_world(Looks looks, const Vec3& origin) {
   for (FaultPlace& worst : looks.worst) worst.place += origin;
-  Json json = Json::parse(looks_json(looks));
+  OrderedJson json = OrderedJson::parse(looks_json(looks));
   json["triangles_ratio"] = known(looks.triangles_ratio);
   return json;
 }
 
-Json texture_json(const LayerTexture& texture) {
+OrderedJson texture_json(const LayerTexture& texture) {
   const BakeFacts& f = texture.facts;
   return {{"width", f.width},     {"height", f.height},     {"texel", f.texel},
           {"charts", f.charts},   {"bytes", texture.bytes}, {"seen", f.seen},
           {"nearest", f.nearest}, {"filled", f.filled},     {"unseen", f.unseen}};
 }
 
-Json layer_json(const Layer& layer, const Vec3& origin) {
-  Json json{{"layer", layer.layer}, {"segments", layer.segments}};
+OrderedJson layer_json(const Layer& layer, const Vec3& origin) {
+  OrderedJson json{{"layer", layer.layer}, {"segments", layer.segments}};
   if (!layer.failure.empty()) {
     json["failure"] = layer.failure;
     return json;
@@ -85,7 +86,7 @@ Json layer_json(const Layer& layer, const Vec3& origin) {
   return json;
 }
 
-Json left_out_json(const LeftOut& l) {
+OrderedJson left_out_json(const LeftOut& l) {
   return {{"reason", to_string(l.reason)},
           {"area", l.area},
           {"share", l.share},
@@ -94,23 +95,23 @@ Json left_out_json(const LeftOut& l) {
           {"farthest", l.farthest}};
 }
 
-Json building_json(const Building& b, bool has_prior) {
-  Json json{{"name", b.source.name},
-            {"given_name", b.source.given_name},
-            {"source", b.source.path},
-            {"vertices", b.counts.vertices},
-            {"faces", b.counts.faces},
-            {"planes", b.counts.planes},
-            {"segments", b.segments.segments.size()},
-            {"prior", has_prior},
-            {"diagonal", b.counts.diagonal},
-            {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
+OrderedJson building_json(const Building& b, bool has_prior) {
+  OrderedJson json{{"name", b.source.name},
+                   {"given_name", b.source.given_name},
+                   {"source", b.source.path},
+                   {"vertices", b.counts.vertices},
+                   {"faces", b.counts.faces},
+                   {"planes", b.counts.planes},
+                   {"segments", b.segments.segments.size()},
+                   {"prior", has_prior},
+                   {"diagonal", b.counts.diagonal},
+                   {"origin", {b.frame.origin.x(), b.frame.origin.y(), b.frame.origin.z()}}};
   json["solid_volume"] = known(b.solid);
-  json["left_out"] = Json::array();
+  json["left_out"] = OrderedJson::array();
   for (const LeftOut& l : b.left_out) json["left_out"].push_back(left_out_json(l));
   json["left_out_total"] = left_out_json(total_of(b.left_out));
   json["left_out_total"].erase("reason");
-  json["layers"] = Json::array();
+  json["layers"] = OrderedJson::array();
   for (const Layer& layer : b.layers) json["layers"].push_back(layer_json(layer, b.frame.origin));
   json["timings"] = {{"read", b.timings.read},
                      {"planes", b.timings.planes},
@@ -132,20 +133,20 @@ Json building_json(const Building& b, bool has_prior) {
   return json;
 }
 
-Json switching_json(const Switching& switching) {
+OrderedJson switching_json(const Switching& switching) {
   const SwitchFacts viewport;
   const double view = 2 * std::tan(viewport.fov_y_deg * std::numbers::pi / 360);
   const SwitchOptions& o = switching.options;
-  Json json = {{"measure", to_string(o.measure)},
-               {"scope", to_string(o.scope)},
-               {"visual_error", o.visual_error},
-               {"pixel_error", o.pixel_error},
-               {"share", o.share},
-               {"viewport_height", viewport.viewport_height},
-               {"fov_y_deg", viewport.fov_y_deg},
-               {"from_prior", switching.is_from_prior},
-               {"warnings", switching.warnings},
-               {"layers", Json::array()}};
+  OrderedJson json = {{"measure", to_string(o.measure)},
+                      {"scope", to_string(o.scope)},
+                      {"visual_error", o.visual_error},
+                      {"pixel_error", o.pixel_error},
+                      {"share", o.share},
+                      {"viewport_height", viewport.viewport_height},
+                      {"fov_y_deg", viewport.fov_y_deg},
+                      {"from_prior", switching.is_from_prior},
+                      {"warnings", switching.warnings},
+                      {"layers", OrderedJson::array()}};
   for (std::size_t k = 0; k < switching.layers.size(); ++k) {
     const SceneSwitch& s = switching.layers[k];
     json["layers"].push_back({{"layer", k},
@@ -161,7 +162,7 @@ Json switching_json(const Switching& switching) {
 }
 
 /// How many assignments of segments to layers are whose.
-Json decided_json(const Scene& scene, const Tally& tally) {
+OrderedJson decided_json(const Scene& scene, const Tally& tally) {
   const std::size_t overruled = scene.overruled.size(), segments = tally.segments;
   const std::size_t beyond = tally.beyond_layer0;
   const bool is_by_kind = !scene.clustering.kinds.empty();
@@ -171,16 +172,16 @@ Json decided_json(const Scene& scene, const Tally& tally) {
           {"overruled", overruled}};
 }
 
-Json kinds_json(const Clustering& clustering) {
-  Json json = Json::array();
+OrderedJson kinds_json(const Clustering& clustering) {
+  OrderedJson json = OrderedJson::array();
   for (const KindFacts& k : clustering.kinds)
     json.push_back({{"layer", k.layer}, {"segments", k.segments}, {"extent", k.extent}});
   return json;
 }
 
 /// What the program kept on layer 0 and a rule took away.
-Json overruled_json(const Scene& scene) {
-  Json json = Json::array();
+OrderedJson overruled_json(const Scene& scene) {
+  OrderedJson json = OrderedJson::array();
   for (const OverruledSegment& o : scene.overruled)
     json.push_back({{"building", o.building},
                     {"segment", o.segment},
@@ -189,7 +190,7 @@ Json overruled_json(const Scene& scene) {
   return json;
 }
 
-Json coanalysis_json(const Scene& scene, const Tally& tally) {
+OrderedJson coanalysis_json(const Scene& scene, const Tally& tally) {
   std::vector<std::string> warnings = scene.selection.warnings;
   warnings.insert(warnings.end(), scene.clustering.warnings.begin(),
                   scene.clustering.warnings.end());
@@ -208,7 +209,7 @@ Json coanalysis_json(const Scene& scene, const Tally& tally) {
 }
 
 /// How much is amiss, over all buildings.
-void put_losses(const Scene& scene, const Tally& tally, Json& totals) {
+void put_losses(const Scene& scene, const Tally& tally, OrderedJson& totals) {
   totals["failed_buildings"] = scene.failures.size() + tally.failed;
   totals["failed_layers"] = tally.failed_layers;
   totals["stand_in_layers"] = tally.stand_in_layers;
@@ -216,8 +217,8 @@ void put_losses(const Scene& scene, const Tally& tally, Json& totals) {
   totals["lost_textures"] = tally.lost_textures;
 }
 
-std::string dumped(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+std::string dumped(const OrderedJson& json) {
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace
@@ -230,7 +231,7 @@ std::uint64_t peak_memory_bytes() {
 
 ReportFrame report_frame(const Scene& scene, const Options& options, const RunTotals& totals,
                          const Tally& tally) {
-  Json json;
+  OrderedJson json;
   json["colod"] = COLOD_VERSION;
   json["parameters"] = parameters_json(options);
   json["totals"] = {
@@ -244,14 +245,14 @@ ReportFrame report_frame(const Scene& scene, const Options& options, const RunTo
   json["coanalysis"] = coanalysis_json(scene, tally);
   json["switching"] = switching_json(scene.switching);
   if (!scene.consistency.empty())
-    json["consistency"] = Json::parse(consistency_json(scene.consistency));
+    json["consistency"] = OrderedJson::parse(consistency_json(scene.consistency));
   json["warnings"] = scene.warnings;
   for (const ClassArea& c : scene.classes)
     json["classes"].push_back({{"name", c.name}, {"area", c.area}});
   std::string before = dumped(json);
   before.resize(before.size() - 2);  // "\n}": the object goes on
-  Json rest;
-  rest["failures"] = Json::array();
+  OrderedJson rest;
+  rest["failures"] = OrderedJson::array();
   for (const ReadFailure& f : scene.failures)
     rest["failures"].push_back({{"source", f.path}, {"message", f.message}});
   if (!scene.tileset_failure.empty())
@@ -260,7 +261,8 @@ ReportFrame report_frame(const Scene& scene, const Options& options, const RunTo
 }
 
 std::string report_row(const Scene& scene, const Building& b) {
-  Json json = building_json(b, scene.has_prior || scene.placed_later.contains(b.source.name));
+  OrderedJson json =
+      building_json(b, scene.has_prior || scene.placed_later.contains(b.source.name));
   if (const auto own = scene.attributes.find(b.source.name); own != scene.attributes.end())
     for (const auto& [name, value] : own->second) json["attributes"][name] = value;
   std::string row = "\n";

@@ -13,7 +13,7 @@
 namespace colod {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::size_t kMostParts = 320;
 
@@ -37,7 +37,7 @@ std::vector<Part> sorted_parts(const std::vector<std::vector<PartFacts>>& buildi
 }
 
 /// `parts` are those of one layer, by falling extent.
-Json cluster_json(const std::vector<Part>& parts, int layer) {
+OrderedJson cluster_json(const std::vector<Part>& parts, int layer) {
   std::vector<std::size_t> buildings;
   double area = 0;
   std::size_t flat = 0;
@@ -56,7 +56,7 @@ Json cluster_json(const std::vector<Part>& parts, int layer) {
           {"area", area}};
 }
 
-Json members_json(const std::vector<PartFacts>& parts, int layers) {
+OrderedJson members_json(const std::vector<PartFacts>& parts, int layers) {
   std::vector<int> count(static_cast<std::size_t>(layers), 0);
   for (const PartFacts& p : parts)
     if (p.layer >= 0 && p.layer < layers) ++count[p.layer];
@@ -81,12 +81,13 @@ class Between {
     for (const std::size_t at : {a * layers_ + b, b * layers_ + a})
       sums_[at] += similarity, counts_[at] += 1;
   }
-  Json json() const {
-    Json rows = Json::array();
+  OrderedJson json() const {
+    OrderedJson rows = OrderedJson::array();
     for (std::size_t a = 0; a < layers_; ++a) {
-      rows.push_back(Json::array());
+      rows.push_back(OrderedJson::array());
       for (std::size_t at = a * layers_; at < (a + 1) * layers_; ++at)
-        rows.back().push_back(counts_[at] > 0 ? Json(sums_[at] / counts_[at]) : Json());
+        rows.back().push_back(counts_[at] > 0 ? OrderedJson(sums_[at] / counts_[at])
+                                              : OrderedJson());
     }
     return rows;
   }
@@ -96,14 +97,14 @@ class Between {
   std::vector<double> sums_, counts_;
 };
 
-void add_similarity(Json& json, const std::vector<Part>& parts, const DescriptorOf& descriptor_of,
-                    const Options& options) {
+void add_similarity(OrderedJson& json, const std::vector<Part>& parts,
+                    const DescriptorOf& descriptor_of, const Options& options) {
   std::vector<Descriptor> descriptors;
   for (const Part& p : parts) descriptors.push_back(descriptor_of(p.building, p.segment));
   std::string values;
   Between between(options.layers);
-  Json layer = Json::array(), building = Json::array(), segment = Json::array(),
-       extent = Json::array();
+  OrderedJson layer = OrderedJson::array(), building = OrderedJson::array(),
+              segment = OrderedJson::array(), extent = OrderedJson::array();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     layer.push_back(parts[i].facts.layer);
     building.push_back(parts[i].building);
@@ -136,15 +137,15 @@ std::vector<PartFacts> parts_of(const Building& b) {
 std::string parts_json(const std::vector<std::vector<PartFacts>>& buildings,
                        const DescriptorOf& descriptor_of, const Options& options) {
   const std::vector<Part> parts = sorted_parts(buildings, options.layers);
-  Json json;
-  json["clusters"] = Json::array();
+  OrderedJson json;
+  json["clusters"] = OrderedJson::array();
   for (int layer = 0; layer < options.layers; ++layer) {
     std::vector<Part> own;
     std::copy_if(parts.begin(), parts.end(), std::back_inserter(own),
                  [layer](const Part& p) { return p.facts.layer == layer; });
     json["clusters"].push_back(cluster_json(own, layer));
   }
-  json["members"] = Json::array();
+  json["members"] = OrderedJson::array();
   for (const std::vector<PartFacts>& b : buildings)
     json["members"].push_back(members_json(b, options.layers));
   if (!parts.empty()) add_similarity(json, pick(parts), descriptor_of, options);

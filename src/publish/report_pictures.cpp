@@ -33,7 +33,7 @@ constexpr std::array<Color, 8> kLayerColors{{{228, 209, 166},
 constexpr Color kNoSegment{188, 190, 192};
 
 /// FNV-1a.
-std::uint32_t hash_of(const std::string& text) {
+std::uint32_t number_of(const std::string& text) {
   std::uint32_t hash = 2166136261u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
   return hash;
@@ -213,7 +213,7 @@ Observer Gallery::observer() {
 }
 
 void Gallery::draw(Building& b) {
-  if (hash_of(b.source.name) % options_.every != 0) return;
+  if (number_of(b.source.name) % options_.every != 0) return;
   Stopwatch watch(b.timings.pictures);
   try {
     std::vector<std::string> pictures = draw_building(b, options_);

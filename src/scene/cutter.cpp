@@ -48,7 +48,7 @@ int Cutter::vertex(std::size_t f, const Vec3& w) {
 
 void Cutter::add(std::size_t f, const Face& face, const std::array<Vec3, 3>& weights) {
   if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) return;
-  if (!(face_area(out_.mesh, face) > kLeastPart)) return;
+  if (!(face_area(out_.mesh, face) > kLeastFace)) return;
   out_.mesh.faces.push_back(face);
   if (!from_.face_object.empty()) out_.face_object.push_back(from_.face_object[f]);
   add_look(f, weights);

@@ -7,7 +7,7 @@
 
 namespace colod {
 
-constexpr double kLeastPart = 1e-7;  ///< m²: a part of less is none
+constexpr double kLeastFace = 1e-7;  ///< m²: a part of less is none
 
 /// Texture coordinates, colours and object numbers go along.
 class Cutter {

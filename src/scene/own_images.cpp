@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWorth = 0.5;               // of an image's pixels: of what is more it stays
 constexpr int kMargin = 2;                   // pixels around a chart, that filters look at
-constexpr int kQuality = 92;                 // of JPEG, which was one before
+constexpr int kOwnQuality = 92;              // of JPEG, which was one before
 constexpr int kLargest = 8192;               // pixels a side
 constexpr std::size_t kMostCharts = 20'000;  // packing takes their square
 
@@ -118,7 +118,7 @@ void OwnImages::Impl::shrink(Source& source, std::size_t image, Worn worn) {
   for (std::size_t c = 0; c < rects.size(); ++c) copy(whole, worn.charts[c], rects[c], raster);
   const bool is_clear = !whole.alpha.empty();
   const std::string bytes =
-      encode_image(raster, is_clear ? ImageFormat::kPng : ImageFormat::kJpeg, kQuality);
+      encode_image(raster, is_clear ? ImageFormat::kPng : ImageFormat::kJpeg, kOwnQuality);
   place = {file.path(), file.append(bytes), bytes.size(), false, 0, 0};
   for (std::size_t i = 0; i < worn.faces.size(); ++i) {
     const auto c = static_cast<std::size_t>(worn.chart[i]);

@@ -297,7 +297,7 @@ Territories::Territories(const std::vector<Footprint>& footprints)
       piece.corners[static_cast<std::size_t>(k)] = {face->vertex(k)->point().x(),
                                                     face->vertex(k)->point().y()};
     const auto& c = piece.corners;
-    if (cross(c[1] - c[0], c[2] - c[0]) < 2 * kLeastPart) continue;
+    if (cross(c[1] - c[0], c[2] - c[0]) < 2 * kLeastFace) continue;
     const Vec2 middle = (c[0] + c[1] + c[2]) / 3;
     double least = kEaves;
     for (const int i : near.find(middle, middle)) {

@@ -22,7 +22,8 @@ void from_json(const nlohmann::json& json, FaultPlace& f) {
   for (int i = 0; i < 3; ++i) f.place[i] = json.at(1 + i);
 }
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Looks, triangles_ratio, wall_area, upright, aligned,
-                                                level_eaves, narrow, unsupported, flaps, worst)
+                                                level_eaves, narrow, unsupported, flaps, ragged,
+                                                worst)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spread, mean, p95, p99, max)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Distances, a_to_b, b_to_a, relative, mean_a_to_b, mean_b_to_a,
                                    rms_a_to_b, rms_b_to_a, taken)
