@@ -115,6 +115,12 @@ TEST_CASE("tops in the air are unsupported; bases, floors and walls under a roof
   const Looks alone = look(kBox, tower);
   CHECK(alone.unsupported == Approx(air).margin(1));
   CHECK(worst(alone, LookFault::kUnsupported) > 3);
+  CHECK(alone.ragged == alone.unsupported);
+  for (const double width : {0.1, 0.25}) {  // a sheet in the air is both, and counts once
+    const Looks sheet = look(kBox, test::join(kBox, test::box_mesh({2, 2, 6}, {8, 2 + width, 9})));
+    CHECK(sheet.ragged < sheet.unsupported + sheet.flaps - 5);
+    CHECK(sheet.ragged >= std::max(sheet.unsupported, sheet.flaps));
+  }
   Mesh roof = kBox;  // all that a flight from above shows
   roof.faces = {kBox.faces[2], kBox.faces[3]};
   CHECK(look(roof, kBox).unsupported == 0);

@@ -136,6 +136,23 @@ TEST_CASE("what is lost is said first, weighed by volume, and counts") {
   CHECK(report["totals"]["lost_bodies"] == 1);
 }
 
+TEST_CASE("a finest layer with little of the source behind it counts as lost, a coarser one not") {
+  Scene scene = build(gable_house(12, 9, 6, 4));
+  Building& b = scene.buildings[0];
+  b.layers[0].looks.ragged = b.layers[0].looks.wall_area;
+  CHECK(!b.has_lost());
+  Looks& finest = b.layers.back().looks;
+  finest.ragged = 0.9 * kMostRagged * finest.wall_area;
+  CHECK(!b.has_lost());
+  CHECK(loss_warnings(b).empty());
+  finest.ragged = 1.1 * kMostRagged * finest.wall_area;
+  CHECK(b.has_lost());
+  REQUIRE(loss_warnings(b).size() == 1);
+  CHECK_THAT(loss_warnings(b)[0], Catch::Contains("28 % as much as it has walls"));
+  b.layers.back().failure = "none";  // which is told of by itself
+  CHECK(loss_warnings(b).empty());
+}
+
 TEST_CASE(
     "a layer whose mesh is another's for a failure counts, one that is only simpler does not") {
   Scene scene = build(gable_house(12, 9, 6, 4));
