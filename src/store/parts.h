@@ -1,9 +1,12 @@
 // Inside the store: SQLite's statements, and the rows of one building.
 #pragma once
 
+#include <sqlite3.h>
+
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -13,9 +16,6 @@
 
 #include "core/error.h"
 #include "store.h"
-
-struct sqlite3;
-struct sqlite3_stmt;
 
 namespace colod {
 
@@ -125,6 +125,20 @@ struct Database {
   void transaction(const std::function<void()>& body) const;
 };
 
+/// Deletes the database of a path, if there is one that is damaged or no `Kind` to go on with, and
+/// tells that it `is_what`.
+template <class Kind>
+void remove_foreign(const std::string& path, const char* is_what,
+                    const std::function<void(const std::string&)>& tell) {
+  if (!std::filesystem::exists(path)) return;
+  Kind found;
+  found.path = path;
+  found.open(SQLITE_OPEN_READWRITE);
+  if (found.is_intact() && found.is_of_its_kind()) return;
+  tell(path + ": is " + is_what + ": made anew");
+  remove_database(path);
+}
+
 struct Store::Impl : Database {
   bool has_row(const char* sql, const std::string& name) const;
   /// All tables, views and triggers as they were made.
@@ -133,7 +147,7 @@ struct Store::Impl : Database {
   bool has_these_rules() const;
   bool has_own_schema() const;  ///< and none besides
   /// Of this format, or empty.
-  bool is_scene_file() const;
+  bool is_of_its_kind() const;
 
   // rows.cpp
   void put_building(const Building& b, int order, const std::string& key) const;

@@ -6,7 +6,6 @@
 
 #include <sqlite3.h>
 
-#include <filesystem>
 #include <set>
 
 #include "core/hash.h"
@@ -50,6 +49,7 @@ struct Shelf::Impl : Database {
     if (is_damaged()) return Content::kOther;
     throw;
   }
+  bool is_of_its_kind() const { return content() != Content::kOther; }
 };
 
 Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
@@ -75,15 +75,7 @@ Shelf::Shelf(Shelf&&) noexcept = default;
 
 Shelf Shelf::open_or_renew(const std::string& path,
                            const std::function<void(const std::string&)>& tell) {
-  if (std::filesystem::exists(path)) {
-    Impl found;
-    found.path = path;
-    found.open(SQLITE_OPEN_READWRITE);
-    if (found.content() == Content::kOther || !found.is_intact()) {
-      tell(path + ": is damaged, or not what this colod writes: made anew");
-      remove_database(path);
-    }
-  }
+  remove_foreign<Impl>(path, "damaged, or not what this colod writes", tell);
   return {path, true};
 }
 

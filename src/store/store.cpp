@@ -9,7 +9,6 @@
 
 #include <sqlite3.h>
 
-#include <filesystem>
 #include <set>
 
 #include "core/hash.h"
@@ -72,7 +71,7 @@ bool Store::Impl::has_own_schema() const {
   return schema() == own.schema();
 }
 
-bool Store::Impl::is_scene_file() const {
+bool Store::Impl::is_of_its_kind() const {
   Statement version = read("PRAGMA user_version");
   version.step();
   return version.integer() == kFormat ? has_own_schema() : schema().empty();
@@ -107,15 +106,7 @@ Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
 
 Store Store::open_or_renew(const std::string& path,
                            const std::function<void(const std::string&)>& tell) {
-  if (std::filesystem::exists(path)) {
-    Impl found;
-    found.path = path;
-    found.open(SQLITE_OPEN_READWRITE);
-    if (!found.is_intact() || !found.is_scene_file()) {
-      tell(path + ": is damaged, or no scene file of this colod: made anew");
-      remove_database(path);
-    }
-  }
+  remove_foreign<Impl>(path, "damaged, or no scene file of this colod", tell);
   return {path, true};
 }
 

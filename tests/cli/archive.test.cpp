@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "archives.h"
 #include "image/image.h"
+#include "program.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 
@@ -69,11 +69,8 @@ void write_both(const TempFolder& folder, const Files& files) {
 }
 
 int run(const TempFolder& folder, const std::string& arguments) {
-  const std::string command = "cd " + folder.path.string() +
-                              " && TMPDIR=" + (folder.path / "temporary").string() + " " +
-                              COLOD_BINARY + " " + arguments + " > log 2>&1";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  const std::string own = "TMPDIR=" + (folder.path / "temporary").string();
+  return run_colod(folder.path, arguments, own).exit_code;
 }
 
 Files built(const TempFolder& folder, const std::string& input, const std::string& options,
@@ -81,7 +78,7 @@ Files built(const TempFolder& folder, const std::string& input, const std::strin
   fs::remove_all(folder.path / "out");
   const int code =
       run(folder, "build " + input + " -o out --ns 24 --nr 24 --no-report-html " + options);
-  INFO(slurp(folder.path / "log"));
+  INFO(slurp(folder.path / "stderr"));
   CHECK(code == ends);
   CHECK(fs::is_empty(folder.path / "temporary"));
   Files out;
@@ -131,7 +128,7 @@ TEST_CASE("messages name tiles as they lie in the archive") {
   files["a.png"] = "no picture";
   write_both(folder, files);
   const Files out = built(folder, kArchive, "", 1);
-  const std::string log = slurp(folder.path / "log");
+  const std::string log = slurp(folder.path / "stderr");
   CHECK_THAT(log, Contains(kArchive + "/b.glb: ") && Contains(kArchive + "/a.png: "));
   CHECK_THAT(log, !Contains("temporary"));
   CHECK_THAT(out.at("out/report.json"), !Contains("temporary"));
@@ -141,9 +138,9 @@ TEST_CASE("stages, other commands and folders say what to do with an archive") {
   const TempFolder folder;
   write_both(folder, scene_files("broken"));
   CHECK(run(folder, "segment " + kArchive + " -o x.colod") == 2);
-  CHECK_THAT(slurp(folder.path / "log"), Contains("`unzip IN.3tz -d DIR`"));
+  CHECK_THAT(slurp(folder.path / "stderr"), Contains("`unzip IN.3tz -d DIR`"));
   CHECK(run(folder, "info " + kArchive) == 3);
-  CHECK_THAT(slurp(folder.path / "log"), Contains("takes it for a scene"));
+  CHECK_THAT(slurp(folder.path / "stderr"), Contains("takes it for a scene"));
   CHECK(run(folder, "build . -o out") == 3);
-  CHECK_THAT(slurp(folder.path / "log"), Contains(kArchive + ": 3tz holds a whole tileset"));
+  CHECK_THAT(slurp(folder.path / "stderr"), Contains(kArchive + ": 3tz holds a whole tileset"));
 }

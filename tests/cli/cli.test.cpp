@@ -10,6 +10,7 @@
 #include <set>
 
 #include "meshes.h"
+#include "program.h"
 #include "temporary_folder.h"
 
 using namespace colod;
@@ -17,11 +18,6 @@ using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Result {
-  int exit_code;
-  std::string out, err;
-};
 
 /// With colod run in it.
 class Folder : public test::TemporaryFolder {
@@ -31,12 +27,8 @@ class Folder : public test::TemporaryFolder {
     std::ofstream(path() / name, std::ios::binary) << text;
     return (path() / name).string();
   }
-  Result colod(const std::string& arguments) const {
-    const std::string command = std::string(COLOD_BINARY) + " " + arguments + " >" +
-                                (path() / "stdout").string() + " 2>" + (path() / "stderr").string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path() / "stdout"),
-            slurp(path() / "stderr")};
+  test::Ended colod(const std::string& arguments) const {
+    return test::run_colod(path(), arguments);
   }
 };
 
@@ -70,8 +62,8 @@ TEST_CASE("build writes every file of the contract and eval finds each layer wat
   Folder f;
   f.write("in/a.off", off(test::gable_house(12, 9, 6, 4)));
   f.write("in/b.off", off(test::gable_house(10, 8, 5, 3)));
-  const Result r = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() + kSmall +
-                           "--format glb,3dtiles,obj,ply");
+  const test::Ended r = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() +
+                                kSmall + "--format glb,3dtiles,obj,ply");
   INFO(r.err);
   REQUIRE(r.exit_code == 0);
   CHECK(fs::exists(f / "out/tileset.json"));
@@ -81,7 +73,7 @@ TEST_CASE("build writes every file of the contract and eval finds each layer wat
       for (int k = 0; k < 3; ++k) {
         const fs::path layer =
             f / ("out/buildings/" + name + ".layer" + std::to_string(k) + "." + ext);
-        const Result e =
+        const test::Ended e =
             f.colod("eval " + (f / ("in/" + name + ".off")).string() + " " + layer.string());
         REQUIRE(e.exit_code == 0);
         const auto json = nlohmann::json::parse(e.out);
@@ -101,7 +93,8 @@ TEST_CASE("a bad building among good ones: exit 1, the others complete, one line
   Folder f;
   f.write("in/good.off", off(test::gable_house(12, 9, 6, 4)));
   f.write("in/bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
-  const Result r = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() + kSmall);
+  const test::Ended r =
+      f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() + kSmall);
   CHECK(r.exit_code == 1);
   CHECK_THAT(r.err, Catch::Contains("bad.off"));
   CHECK_THAT(slurp(f / "out/report.html"), Catch::Contains("bad.off"));
@@ -127,7 +120,7 @@ TEST_CASE("exit codes say what kind of thing went wrong") {
             .exit_code == 3);
   CHECK(f.colod("eval " + house + " " + (f / "nothing.obj").string()).exit_code == 3);
   CHECK(f.colod("build " + house + kSmall + " -o /proc/no/such/place").exit_code == 5);
-  const Result bad = f.colod("build " + (f / "nothing.obj").string() + out);
+  const test::Ended bad = f.colod("build " + (f / "nothing.obj").string() + out);
   CHECK_THAT(bad.err, Catch::Contains("nothing.obj"));
   CHECK(std::count(bad.err.begin(), bad.err.end(), '\n') == 1);
 }
@@ -139,8 +132,8 @@ TEST_CASE("a config file sets options, the command line wins") {
       f.write("colod.toml",
               "ns = 30\nnr = 32\nlayers = 2\nmin-points = 1\nrules = \"paper\"\n"
               "visibility = \"sweep\"\n");
-  const Result r = f.colod("build " + house + " -o " + (f / "out").string() + " --quiet --config " +
-                           config + " --ns 20");
+  const test::Ended r = f.colod("build " + house + " -o " + (f / "out").string() +
+                                " --quiet --config " + config + " --ns 20");
   INFO(r.err);
   REQUIRE(r.exit_code == 0);
   const auto p = nlohmann::json::parse(slurp(f / "out/report.json"))["parameters"];
@@ -263,7 +256,7 @@ TEST_CASE("odd names, odd bytes and an output that cannot be: no half of anythin
   f.write("in/" + std::string(240, 'x') + ".off", house);
   f.write("in/bad \xFC\n.off", "OFF\n\xFF\x01 3 0\n");
   const std::string in = " '" + (f / "in").string() + "' ", small = " --ns 12 --nr 16 --quiet ";
-  const Result r = f.colod("build" + in + small + "-o " + (f / "out").string());
+  const test::Ended r = f.colod("build" + in + small + "-o " + (f / "out").string());
   CHECK(r.exit_code == 1);
   CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
   CHECK(nlohmann::json::parse(slurp(f / "out/report.json"))["buildings"].size() == 3);
@@ -290,8 +283,8 @@ TEST_CASE("place, winding and repetition of faces do not matter") {
   const std::string path = f.write("h.off", off(house));
   REQUIRE(f.colod("build " + path + kSmall + "--format ply -o " + (f / "o").string()).exit_code ==
           0);
-  const Result e = f.colod("eval " + f.write("p.off", off(house)) + " " +
-                           (f / "o/buildings/h.layer2.ply").string());
+  const test::Ended e = f.colod("eval " + f.write("p.off", off(house)) + " " +
+                                (f / "o/buildings/h.layer2.ply").string());
   const auto json = nlohmann::json::parse(e.out);
   CHECK(json["watertight"] == true);
   CHECK(json["volume"].get<double>() == Approx(12 * 9 * 8).epsilon(0.01));
@@ -308,7 +301,7 @@ TEST_CASE(
         "switch-share", "input-memory", "threads"})
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "x", "''"}) {
       INFO(option << " " << value);
-      const Result result = f.colod(build + "--" + option + "=" + value);
+      const test::Ended result = f.colod(build + "--" + option + "=" + value);
       CHECK(result.exit_code == 2);
       CHECK_THAT(result.err, Catch::Contains("--" + option));
       CHECK_FALSE(fs::exists(f / "out"));
@@ -321,8 +314,8 @@ TEST_CASE("an option that takes more than the machine has is refused with the mo
   Folder f;
   for (int i = 0; i < 64; ++i)
     f.write("in/" + std::to_string(i) + ".off", off(test::gable_house(12, 9, 6, 4)));
-  const Result result = f.colod("build " + (f / "in").string() + " -o " + (f / "out").string() +
-                                " --ns 1000 --threads 4096");
+  const test::Ended result = f.colod("build " + (f / "in").string() + " -o " +
+                                     (f / "out").string() + " --ns 1000 --threads 4096");
   CHECK(result.exit_code == 2);
   CHECK_THAT(result.err, Catch::Contains("--ns: 1000 takes about 14.9 GiB a building") &&
                              Catch::Contains("at most"));

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "las_files.h"
-#include "temporary_folder.h"
+#include "program.h"
 
 using namespace colod;
 using namespace colod::test;
@@ -17,19 +17,11 @@ using Json = nlohmann::json;
 
 namespace {
 
-struct Run {
-  int code;
-  std::string log;
-};
-
 /// With few voxels: what a scene is taken apart into does not hang on them.
-Run build(const TemporaryFolder& folder, const std::string& rest, const std::string& out = "out") {
-  const std::string log = (folder / "log").string();
-  const std::string command = std::string(COLOD_BINARY) + " build " + rest + " -o " +
-                              (folder / out).string() + " --ns 24 --nr 24 --no-report-html > " +
-                              log + " 2>&1";
-  const int status = std::system(command.c_str());
-  return {WEXITSTATUS(status), slurp(log)};
+Ended build(const TemporaryFolder& folder, const std::string& rest,
+            const std::string& out = "out") {
+  return run_colod(folder.path(), "build " + rest + " -o " + (folder / out).string() +
+                                      " --ns 24 --nr 24 --no-report-html");
 }
 
 Json report(const TemporaryFolder& folder) {
@@ -63,11 +55,11 @@ TEST_CASE("a cloud of several houses is a place, one of a single house with its 
   const TemporaryFolder folder;
   const int houses = GENERATE(1, 2, 3);
   const int format = GENERATE(0, 7);  // without and with colours
-  const Run run = build(folder, write_place(folder, houses, format));
-  INFO(run.log);
-  CHECK(run.code == 0);
+  const Ended run = build(folder, write_place(folder, houses, format));
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
   const std::string says = std::to_string(houses * houses) + " buildings stand apart";
-  CHECK((run.log.find("taken for a scene, since " + says) != std::string::npos) == (houses > 1));
+  CHECK((run.err.find("taken for a scene, since " + says) != std::string::npos) == (houses > 1));
   const Json buildings = report(folder)["buildings"];
   REQUIRE(buildings.size() == static_cast<std::size_t>(houses) * houses);
   for (const Json& b : buildings) {
@@ -100,9 +92,9 @@ TEST_CASE("a cloud takes footprints, a place on Earth, and gives the same bytes 
       path + " --crs EPSG:25832 --footprints " + (folder / "plan.geojson").string();
   std::map<std::string, std::string> files[2];
   for (const int i : {0, 1}) {
-    const Run run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
-    INFO(run.log);
-    CHECK(run.code == 0);
+    const Ended run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "out"))
       if (entry.path().extension() == ".glb" || entry.path().filename() == "tileset.json")
         files[i][entry.path().string()] = slurp(entry.path());
@@ -119,22 +111,22 @@ TEST_CASE("a cloud takes footprints, a place on Earth, and gives the same bytes 
 TEST_CASE("what of a cloud cannot work is said in one line, and --scene buildings is believed") {
   const TemporaryFolder folder;
   const std::string path = write_place(folder, 2);
-  const Run one = build(folder, path + " --scene buildings");
-  INFO(one.log);
+  const Ended one = build(folder, path + " --scene buildings");
+  INFO(one.err);
   CHECK(report(folder)["buildings"].size() == 1);
-  CHECK(one.log.find("taken for a scene") == std::string::npos);
+  CHECK(one.err.find("taken for a scene") == std::string::npos);
   std::vector<LasPoint> roofs, bare;
   for (const LasPoint& p : place_of(2)) (p.kind == 6 ? roofs : bare).push_back(p);
   const std::string of_roofs = (folder / "roofs.las").string(),
                     of_ground = (folder / "ground.las").string();
   std::ofstream(of_roofs, std::ios::binary) << las(roofs, 2, 0);
   std::ofstream(of_ground, std::ios::binary) << las(bare, 2, 0);
-  const Run no_ground = build(folder, of_roofs + " --scene scene", "a");
-  CHECK(no_ground.code == 3);
-  CHECK_THAT(no_ground.log, Contains("no ground that they stand on: --scene buildings"));
-  const Run no_building = build(folder, of_ground + " --scene scene", "b");
-  CHECK(no_building.code == 3);
-  CHECK_THAT(no_building.log, Contains("no building was found on it"));
+  const Ended no_ground = build(folder, of_roofs + " --scene scene", "a");
+  CHECK(no_ground.exit_code == 3);
+  CHECK_THAT(no_ground.err, Contains("no ground that they stand on: --scene buildings"));
+  const Ended no_building = build(folder, of_ground + " --scene scene", "b");
+  CHECK(no_building.exit_code == 3);
+  CHECK_THAT(no_building.err, Contains("no building was found on it"));
 }
 
 namespace {
@@ -165,12 +157,13 @@ TEST_CASE("two houses on a cut block are a place, one on a wide block is a word'
   if (has_two) houses.push_back({width - 20, 20});
   const std::string path = (folder / "block.las").string();
   std::ofstream(path, std::ios::binary) << las(place_with(width, 55, houses), 2, 0);
-  const Run run = build(folder, path);
-  INFO(run.log);
-  CHECK(run.code == 0);
+  const Ended run = build(folder, path);
+  INFO(run.err);
+  CHECK(run.exit_code == (has_two ? 0 : 1));  // one flat roof without its ground is a plate
+  CHECK((run.err.find("or are thin sheets") != std::string::npos) == !has_two);
   CHECK(report(folder)["buildings"].size() == houses.size());
-  CHECK((run.log.find("taken for a scene, since 2 buildings") != std::string::npos) == has_two);
-  CHECK((run.log.find("it is taken for one building: --scene scene takes it apart") !=
+  CHECK((run.err.find("taken for a scene, since 2 buildings") != std::string::npos) == has_two);
+  CHECK((run.err.find("it is taken for one building: --scene scene takes it apart") !=
          std::string::npos) == !has_two);
 }
 
@@ -179,9 +172,9 @@ TEST_CASE("of several clouds one that is a place is told of") {
   const std::string path = write_place(folder, 2);
   const std::string house = (folder / "house.las").string();
   std::ofstream(house, std::ios::binary) << las(place_of(1), 2, 0);
-  const Run run = build(folder, path + " " + house);
-  INFO(run.log);
-  CHECK(run.code == 1);
-  CHECK_THAT(run.log, Contains("block.las: looks like a scene: 4 buildings"));
+  const Ended run = build(folder, path + " " + house);
+  INFO(run.err);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.err, Contains("block.las: looks like a scene: 4 buildings"));
   CHECK(report(folder)["buildings"].size() == 2);
 }

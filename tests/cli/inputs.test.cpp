@@ -3,12 +3,12 @@
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "meshes.h"
+#include "program.h"
 #include "temporary_folder.h"
 
 using namespace colod;
@@ -17,11 +17,6 @@ using test::slurp;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Result {
-  int exit_code;
-  std::string err;
-};
 
 /// With `colod build in -o out` run in it.
 class Folder : public test::TemporaryFolder {
@@ -33,13 +28,12 @@ class Folder : public test::TemporaryFolder {
     fs::create_directories(in(name).parent_path());
     std::ofstream(in(name), std::ios::binary) << text;
   }
-  Result build(const std::string& options = "") const {
+  test::Ended build(const std::string& options = "") const {
     fs::remove_all(path() / "out");
-    const std::string command = std::string("timeout 120 ") + COLOD_BINARY + " build " +
-                                (path() / "in").string() + " -o " + (path() / "out").string() +
-                                " --ns 16 --nr 10 " + options + " 2>" + (path() / "err").string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path() / "err")};
+    return test::run_colod(path(),
+                           "build " + (path() / "in").string() + " -o " +
+                               (path() / "out").string() + " --ns 16 --nr 10 " + options,
+                           "timeout 120");
   }
   nlohmann::json report() const {
     return nlohmann::json::parse(slurp(out("report.json")), nullptr, false);
@@ -79,7 +73,7 @@ TEST_CASE("a stray triangle or vertex costs neither its building nor the others"
   f.write("good.obj", obj(house_at(kUtm)));
   f.write("piece.obj", obj(piece));
   f.write("sliver.obj", obj(sliver));
-  const Result r = f.build("--quiet");
+  const test::Ended r = f.build("--quiet");
   INFO(r.err);
   CHECK(r.exit_code == 0);
   CHECK(fs::exists(f.out("tileset.json")));
@@ -93,7 +87,7 @@ TEST_CASE("a bad file beside the input leaves the tileset local, with a line") {
   const Folder f;
   f.write("good.obj", obj(house_at({0, 0, 0})));
   const auto check = [&](const std::string& what) {
-    const Result r = f.build();
+    const test::Ended r = f.build();
     INFO(what << ": " << r.err);
     CHECK(r.exit_code == 0);
     CHECK_THAT(r.err, Contains("metadata.xml") && Contains("stays local"));
@@ -119,7 +113,7 @@ TEST_CASE("a place that is none is refused before the work") {
   const Folder f;
   f.write("good.obj", obj(house_at(kUtm)));
   for (const char* options : {"--crs EPSG:4326", "--crs nonsense", "--origin 1"}) {
-    const Result r = f.build(options);
+    const test::Ended r = f.build(options);
     INFO(options << ": " << r.err);
     CHECK(r.exit_code == 2);
     CHECK(!fs::exists(f.out("buildings")));
@@ -129,7 +123,7 @@ TEST_CASE("a place that is none is refused before the work") {
 TEST_CASE("a tileset that has no place fails alone: buildings and report are written") {
   const Folder f;
   f.write("good.obj", obj(house_at({1e9, 1e9, 0})));
-  const Result r = f.build("--crs EPSG:25832");
+  const test::Ended r = f.build("--crs EPSG:25832");
   INFO(r.err);
   CHECK(r.exit_code == 1);
   CHECK_THAT(r.err, Contains("tileset.json"));
@@ -144,7 +138,7 @@ TEST_CASE("odd entries of a folder fail by name, the rest is built") {
   fs::create_symlink("/dev/zero", f.in("z.obj"));
   REQUIRE(mkfifo(f.in("f.obj").c_str(), 0600) == 0);
   f.write("deep/b.obj", obj(house_at({20, 0, 0})));
-  const Result r = f.build();
+  const test::Ended r = f.build();
   INFO(r.err);
   CHECK(r.exit_code == 1);
   CHECK(fs::exists(f.out("buildings/a.glb")));
@@ -169,7 +163,7 @@ TEST_CASE("axes and units that look wrong are named with their option, degrees r
   CHECK_THAT(f.build().err, Contains("--unit mm"));
   CHECK(f.build("--unit mm --quiet").err == "");
   f.write("a.obj", obj(degrees));
-  const Result r = f.build();
+  const test::Ended r = f.build();
   CHECK(r.exit_code == 3);
   CHECK_THAT(r.err, Contains("degrees"));
 }

@@ -3,12 +3,12 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "meshes.h"
+#include "program.h"
 #include "temporary_folder.h"
 
 using namespace colod;
@@ -28,13 +28,11 @@ class Folder : public test::TemporaryFolder {
       out << "f " << f[0] + 1 << ' ' << f[1] + 1 << ' ' << f[2] + 1 << '\n';
   }
   int build(const std::string& input, const std::string& options = "") const {
-    const std::string command = std::string(COLOD_BINARY) + " build " + (path() / input).string() +
-                                " -o " + (path() / "out").string() + " --ns 24 --nr 40 " + options +
-                                " 2>" + (path() / "err").string();
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return test::run_colod(path(), "build " + (path() / input).string() + " -o " +
+                                       (path() / "out").string() + " --ns 24 --nr 40 " + options)
+        .exit_code;
   }
-  std::string err() const { return slurp(path() / "err"); }
+  std::string err() const { return slurp(path() / "stderr"); }
   nlohmann::json report() const { return nlohmann::json::parse(slurp(path() / "out/report.json")); }
 };
 

@@ -3,32 +3,23 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "program.h"
 #include "temporary_folder.h"
 
+using colod::test::Ended;
+using colod::test::run_colod;
 using colod::test::slurp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
 
-struct Result {
-  int exit_code;
-  std::string out, err;
-};
-
 struct Folder : colod::test::TemporaryFolder {
-  Result colod(const std::string& arguments) const {
-    const std::string command =
-        "cd " + path().string() + " && " COLOD_BINARY " " + arguments + " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path() / "stdout"),
-            slurp(path() / "stderr")};
-  }
+  Ended colod(const std::string& arguments) const { return run_colod(path(), arguments); }
 };
 
 long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
@@ -37,7 +28,7 @@ long lines(const std::string& text) { return std::count(text.begin(), text.end()
 
 TEST_CASE("the list says what is on, a page what a rule is, JSON all of it") {
   const Folder folder;
-  const Result list = folder.colod("rules --without planes.coplanar");
+  const Ended list = folder.colod("rules --without planes.coplanar");
   CHECK(list.exit_code == 0);
   CHECK(list.out.find("planes.coplanar        off") != std::string::npos);
   CHECK(list.out.find("planes.sheets          off") != std::string::npos);
@@ -55,12 +46,12 @@ TEST_CASE("the list says what is on, a page what a rule is, JSON all of it") {
 TEST_CASE("what is no rule, or has no effect, is refused before the work") {
   const Folder folder;
   for (const char* what : {"build x.obj -o out", "segment x.obj -o s.colod", "rules"}) {
-    const Result r = folder.colod(std::string(what) + " --without planes.floater");
+    const Ended r = folder.colod(std::string(what) + " --without planes.floater");
     CHECK(r.exit_code == 2);
     CHECK(lines(r.err) == 1);
     CHECK(r.err.find("planes.floaters") != std::string::npos);
   }
-  const Result r = folder.colod("rules --rules paper --without planes.floaters");
+  const Ended r = folder.colod("rules --rules paper --without planes.floaters");
   CHECK(r.exit_code == 2);
   CHECK(lines(r.err) == 1);
 }
@@ -82,14 +73,14 @@ TEST_CASE("rules that are off reach the report, by options, config and scene fil
   CHECK(without("build in -o out --config c.toml" + options) == expected);
 
   const std::string some = " --without chain.volume,planes.coplanar --ns 16 --nr 20";
-  const Result segmented = folder.colod("segment in -o s.colod" + some);
+  const Ended segmented = folder.colod("segment in -o s.colod" + some);
   CHECK(segmented.err.find("planes.sheets") != std::string::npos);
   REQUIRE(folder.colod("analyze s.colod").exit_code == 0);
   REQUIRE(folder.colod("mesh s.colod").exit_code <= 1);
   CHECK(without("export s.colod -o out --no-report-html --quiet") == expected);
 
   REQUIRE(folder.colod("segment in -o t.colod --ns 16 --nr 20").exit_code == 0);
-  const Result both = folder.colod("analyze s.colod t.colod");
+  const Ended both = folder.colod("analyze s.colod t.colod");
   CHECK(both.exit_code == 3);
   CHECK(both.err.find("other rules") != std::string::npos);
 }

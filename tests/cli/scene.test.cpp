@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "place/place.h"
+#include "program.h"
 #include "scenes.h"
-#include "temporary_folder.h"
 
 using namespace colod;
 using test::slurp;
@@ -18,19 +18,10 @@ using Json = nlohmann::json;
 
 namespace {
 
-struct Run {
-  int code;
-  std::string log;
-};
-
 /// With few voxels: what a scene is taken apart into does not hang on them.
-Run build(const TempFolder& folder, const std::string& rest) {
-  const std::string log = (folder.path / "log").string();
-  const std::string command = std::string(COLOD_BINARY) + " build " + rest + " -o " +
-                              (folder.path / "out").string() +
-                              " --ns 24 --nr 24 --no-report-html > " + log + " 2>&1";
-  const int status = std::system(command.c_str());
-  return {WEXITSTATUS(status), slurp(log)};
+Ended build(const TempFolder& folder, const std::string& rest) {
+  return run_colod(folder.path, "build " + rest + " -o " + (folder.path / "out").string() +
+                                    " --ns 24 --nr 24 --no-report-html");
 }
 
 /// Two houses of a row, 8 by 10 m, 6 and 9 m high, that share the wall at x = 20, on level ground
@@ -91,10 +82,10 @@ TEST_CASE("each house of a row is a building of its own, closed, in its own volu
   const TempFolder folder;
   write_row(folder);
   const std::string plans = folder.write("plan.geojson", kPlan);
-  const Run run = build(folder, folder.path.string() + " --footprints " + plans);
-  INFO(run.log);
-  CHECK(run.code == 0);
-  CHECK_THAT(run.log, Contains("taken for a scene") && Contains("4 tiles"));
+  const Ended run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.err, Contains("taken for a scene") && Contains("4 tiles"));
   const Json buildings = report(folder)["buildings"];
   REQUIRE(buildings.size() == 2);
   const double volumes[] = {8 * 10 * 6, 8 * 10 * 9};
@@ -125,9 +116,9 @@ TEST_CASE("a scene in Earth-centred coordinates ends at its place again") {
   const std::string plans = folder.write("plan.geojson", R"({"type":"FeatureCollection",
     "crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},"features":[)" +
                                                              std::string("]}"));
-  const Run empty = build(folder, folder.path.string() + " --footprints " + plans);
-  CHECK(empty.code == 3);
-  CHECK_THAT(empty.log, Contains("holds no polygon"));
+  const Ended empty = build(folder, folder.path.string() + " --footprints " + plans);
+  CHECK(empty.exit_code == 3);
+  CHECK_THAT(empty.err, Contains("holds no polygon"));
   // Degrees: 1 m is 1 / 111,170 of latitude and 1 / 75,340 of longitude here.
   const auto degrees = [](double x, double y) {
     char text[80];
@@ -137,9 +128,9 @@ TEST_CASE("a scene in Earth-centred coordinates ends at its place again") {
   const std::string ring = degrees(12, 14) + "," + degrees(28, 14) + "," + degrees(28, 24) + "," +
                            degrees(12, 24) + "," + degrees(12, 14);
   const std::string good = folder.write("good.geojson", plan({{"row", ring}}));
-  const Run run = build(folder, folder.path.string() + " --footprints " + good);
-  INFO(run.log);
-  CHECK(run.code == 0);
+  const Ended run = build(folder, folder.path.string() + " --footprints " + good);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
   const Json tileset = Json::parse(slurp(folder.path / "out" / "tileset.json"));
   Eigen::Matrix4d root;
   for (int i = 0; i < 16; ++i) root(i) = tileset["root"]["transform"][static_cast<std::size_t>(i)];
@@ -160,19 +151,19 @@ TEST_CASE("footprints that meet no surface say so and cost themselves only") {
   const TempFolder folder;
   write_row(folder);
   const std::string far = folder.write("far.geojson", plan({{"a", square(500, 500, 9, 9)}}));
-  const Run none = build(folder, folder.path.string() + " --footprints " + far);
-  CHECK(none.code == 3);
-  CHECK_THAT(none.log,
+  const Ended none = build(folder, folder.path.string() + " --footprints " + far);
+  CHECK(none.exit_code == 3);
+  CHECK_THAT(none.err,
              Contains("none of 1 footprints lies on the scene") && Contains("nowhere on Earth"));
   std::filesystem::remove(folder.path / "tile3.b3dm");
   const std::string some = folder.write("some.geojson", plan({{"left", square(12, 14, 8, 10)},
                                                               {"gap", square(30, 30, 8, 8)},
                                                               {"wide", square(12, 14, 5e6, 10)},
                                                               {"away", square(500, 500, 9, 9)}}));
-  const Run run = build(folder, folder.path.string() + " --footprints " + some);
-  INFO(run.log);
-  CHECK(run.code == 1);
-  CHECK_THAT(run.log, Contains("'tile3.b3dm' is missing") && Contains("1 of 4 footprints") &&
+  const Ended run = build(folder, folder.path.string() + " --footprints " + some);
+  INFO(run.err);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.err, Contains("'tile3.b3dm' is missing") && Contains("1 of 4 footprints") &&
                           Contains("'wide' reaches more than a kilometre") &&
                           Contains("gap: no surface of the scene"));
   CHECK(report(folder)["buildings"].size() == 2);
@@ -183,15 +174,15 @@ TEST_CASE("what goes not together is told before the work") {
   write_row(folder);
   const std::string plans = folder.write("plan.geojson", kPlan);
   const std::string mesh = folder.write("house.obj", obj_text(gable_house(12, 8, 6, 3)));
-  const Run single = build(folder, mesh + " --footprints " + plans);
-  CHECK(single.code == 2);
-  CHECK_THAT(single.log, Contains("--scene scene"));
-  const Run two = build(folder, folder.path.string() + " " + mesh + " --footprints " + plans);
-  CHECK(two.code == 2);
-  CHECK_THAT(two.log, Contains("built alone"));
-  const Run id = build(folder, folder.path.string() + " --footprint-id nr --footprints " + plans);
-  CHECK(id.code == 2);
-  CHECK_THAT(id.log, Contains("'nr' is no attribute") && Contains("id, use"));
+  const Ended single = build(folder, mesh + " --footprints " + plans);
+  CHECK(single.exit_code == 2);
+  CHECK_THAT(single.err, Contains("--scene scene"));
+  const Ended two = build(folder, folder.path.string() + " " + mesh + " --footprints " + plans);
+  CHECK(two.exit_code == 2);
+  CHECK_THAT(two.err, Contains("built alone"));
+  const Ended id = build(folder, folder.path.string() + " --footprint-id nr --footprints " + plans);
+  CHECK(id.exit_code == 2);
+  CHECK_THAT(id.err, Contains("'nr' is no attribute") && Contains("id, use"));
 }
 
 TEST_CASE("stages make of a scene the files that build makes") {
@@ -199,7 +190,7 @@ TEST_CASE("stages make of a scene the files that build makes") {
   write_row(folder);
   const std::string plans = folder.write("plan.geojson", kPlan);
   const std::string colod = COLOD_BINARY, f = folder.path.string(), quiet = " > /dev/null 2>&1 && ";
-  REQUIRE(build(folder, f + " --context none --footprints " + plans).code == 0);
+  REQUIRE(build(folder, f + " --context none --footprints " + plans).exit_code == 0);
   const std::string stages = colod + " segment " + f + " --footprints " + plans +
                              " --ns 24 --nr 24 -o " + f + "/s.colod" + quiet + colod + " analyze " +
                              f + "/s.colod" + quiet + colod + " mesh " + f + "/s.colod" + quiet +
@@ -224,16 +215,16 @@ TEST_CASE("a coarse tile that is broken or missing is told of once, and costs on
   coarse.push_back("missing.b3dm");
   write_row(folder, "", coarse);
   const std::string plans = folder.write("plan.geojson", kPlan);
-  const Run run = build(folder, folder.path.string() + " --footprints " + plans);
-  INFO(run.log);
-  CHECK(run.code == 0);  // nothing of the place is lost
+  const Ended run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);  // nothing of the place is lost
   for (std::size_t i = 1; i < coarse.size(); ++i) {
-    const std::size_t first = run.log.find(coarse[i]);
+    const std::size_t first = run.err.find(coarse[i]);
     REQUIRE(first != std::string::npos);
-    CHECK(run.log.find(coarse[i], first + 1) == std::string::npos);
+    CHECK(run.err.find(coarse[i], first + 1) == std::string::npos);
     CHECK(report(folder)["warnings"].dump().find(coarse[i]) != std::string::npos);
   }
-  CHECK(run.log.find("whole.b3dm") == std::string::npos);
+  CHECK(run.err.find("whole.b3dm") == std::string::npos);
 }
 
 TEST_CASE("an image that is lost beside the buildings is told of and makes the exit code 1") {
@@ -254,11 +245,11 @@ TEST_CASE("an image that is lost beside the buildings is told of and makes the e
   }
   folder.write("scene.mtl", "newmtl wall\nmap_Kd wall.jpg\n");
   const std::string scene = folder.write("scene.obj", text);
-  const Run run = build(folder, scene + " --scene scene --footprints " + plans);
-  INFO(run.log);
-  CHECK(run.code == 1);
-  CHECK_THAT(run.log, Contains("wall.jpg") && Contains("its look is lost beside the buildings"));
-  CHECK_THAT(run.log, Contains("2 of 2 buildings") && Contains("inputs have 1 failures"));
+  const Ended run = build(folder, scene + " --scene scene --footprints " + plans);
+  INFO(run.err);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.err, Contains("wall.jpg") && Contains("its look is lost beside the buildings"));
+  CHECK_THAT(run.err, Contains("2 of 2 buildings") && Contains("inputs have 1 failures"));
   CHECK(report(folder)["failures"].size() == 1);
 }
 
@@ -268,10 +259,10 @@ TEST_CASE("of a tileset's coarser level what is finer is left out of the context
   write_row(folder, "", {"whole.b3dm"});
   const std::string plans = folder.write("plan.geojson", kPlan);
   for (const int level : {0, 1}) {
-    const Run run = build(folder, folder.path.string() + " --source-level " +
-                                      std::to_string(level) + " --footprints " + plans);
-    INFO(run.log);
-    CHECK(run.code == 0);
+    const Ended run = build(folder, folder.path.string() + " --source-level " +
+                                        std::to_string(level) + " --footprints " + plans);
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
     std::size_t tiles = 0;
     for (const auto& entry :
          std::filesystem::directory_iterator(folder.path / "out" / "tiles" / "context"))
@@ -324,9 +315,9 @@ TEST_CASE("a folder of tiles gets coarser ones of its own, in one chain") {
   const int side = GENERATE(40, 60, 100);
   write_tiles(folder, side);
   const std::string plans = folder.write("plan.geojson", kPlan);
-  const Run run = build(folder, folder.path.string() + " --footprints " + plans);
-  INFO(run.log);
-  CHECK(run.code == 0);
+  const Ended run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
   const int tiles = side / 20;
   CHECK(context_tiles(folder) > tiles * tiles);
   const std::string check = std::string(COLOD_BINARY) + " info --check " +
@@ -341,9 +332,9 @@ TEST_CASE("of a scene its ground alone, in the same bytes with one thread and wi
   const std::string rest = folder.path.string() + " --context ground --footprints " + plans;
   std::map<std::string, std::string> files[2];
   for (const int i : {0, 1}) {
-    const Run run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
-    INFO(run.log);
-    CHECK(run.code == 0);
+    const Ended run = build(folder, rest + " --threads " + (i == 0 ? "1" : "4"));
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
     CHECK(context_tiles(folder) >= 2);
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(folder.path / "out" / "tiles"))
@@ -377,16 +368,16 @@ TEST_CASE("a place that is given as one mesh is taken apart, and one house on it
   const bool is_place = GENERATE(true, false);
   const Mesh place = measured_place(is_place ? row_and_two() : kRow);
   const std::string mesh = folder.write("place.obj", obj_text(place));
-  const Run run = build(folder, mesh);
-  INFO(run.log);
-  CHECK((run.log.find("taken for a scene, since 3 buildings stand apart") != std::string::npos) ==
+  const Ended run = build(folder, mesh);
+  INFO(run.err);
+  CHECK((run.err.find("taken for a scene, since 3 buildings stand apart") != std::string::npos) ==
         is_place);
-  CHECK(run.code == 0);
+  CHECK(run.exit_code == 0);
   CHECK(report(folder)["buildings"].size() == (is_place ? 4 : 1));  // the row has two heights
   CHECK((context_tiles(folder) > 0) == is_place);
-  const Run told = build(folder, mesh + " --scene buildings");
-  INFO(told.log);
-  CHECK(told.log.find("scene, since") == std::string::npos);
+  const Ended told = build(folder, mesh + " --scene buildings");
+  INFO(told.err);
+  CHECK(told.err.find("scene, since") == std::string::npos);
   CHECK(report(folder)["buildings"].size() == 1);
 }
 
@@ -394,10 +385,10 @@ TEST_CASE("of several meshes one that is a place is told of, and built as one bu
   const TempFolder folder;
   const std::string mesh = folder.write("place.obj", obj_text(measured_place(row_and_two())));
   const std::string house = folder.write("house.obj", obj_text(gable_house(12, 8, 6, 3)));
-  const Run run = build(folder, mesh + " " + house);
-  INFO(run.log);
-  CHECK(run.code == 1);
-  CHECK_THAT(run.log, Contains("looks like a scene: 3 buildings"));
+  const Ended run = build(folder, mesh + " " + house);
+  INFO(run.err);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.err, Contains("looks like a scene: 3 buildings"));
   CHECK(report(folder)["buildings"].size() == 2);
 }
 
@@ -418,12 +409,12 @@ TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain wit
     mesh = kind == "on its side" ? folder.write("place.glb", glb_of(place))
                                  : folder.write("place.obj", obj_text(place));
   }
-  const Run run = build(folder, mesh);
-  INFO(run.log);
+  const Ended run = build(folder, mesh);
+  INFO(run.err);
   const bool is_told = kind != "whole";
-  CHECK((run.log.find(says) != std::string::npos) == is_told);
-  CHECK((run.code != 0) == is_told);
-  CHECK((run.log.find("looks z up") != std::string::npos) == (kind == "on its side"));
+  CHECK((run.err.find(says) != std::string::npos) == is_told);
+  CHECK((run.exit_code != 0) == is_told);
+  CHECK((run.err.find("looks z up") != std::string::npos) == (kind == "on its side"));
 }
 
 TEST_CASE("kill -9 during any stage of a scene: the same command goes on, the bytes are the same") {
@@ -445,7 +436,7 @@ TEST_CASE("kill -9 during any stage of a scene: the same command goes on, the by
   for (const std::string& stage : stages("killed")) {
     for (int ms = 10; ms < 3000; ms += ms / 2 + 10)  // sooner and later, and at last not at all
       run("timeout -s KILL " + std::to_string(ms / 1000.0) + " ", stage);
-    INFO(stage << slurp(folder.path / "log"));
+    INFO(stage << slurp(folder.path / "stderr"));
     REQUIRE(run("", stage) == 0);
   }
   for (const char* file : {"tileset.json", "buildings/left.glb", "buildings/right.glb"}) {

@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "image/image.h"
 #include "meshes.h"
+#include "program.h"
 #include "temporary_folder.h"
 
 using namespace colod;
@@ -47,10 +47,7 @@ class Folder : public test::TemporaryFolder {
   }
 
   int run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "cd " + path().string() + " && " + environment + " " +
-                                COLOD_BINARY + " " + arguments + " 2> err";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return test::run_colod(path(), arguments, environment).exit_code;
   }
   /// All files that a build writes but its report.
   Files built(const std::string& input, const std::string& options = "", int ends = 0) const {
@@ -65,7 +62,7 @@ class Folder : public test::TemporaryFolder {
         all[fs::relative(entry.path(), path() / folder).string()] = slurp(entry.path());
     return all;
   }
-  std::string err() const { return slurp(path() / "err"); }
+  std::string err() const { return slurp(path() / "stderr"); }
   nlohmann::json report() const { return nlohmann::json::parse(slurp(path() / "out/report.json")); }
 };
 
@@ -242,9 +239,9 @@ TEST_CASE("looks are measured: a textured house beside itself and beside its lay
   folder.write_house("in", kMtl);
   folder.write("in/wall.png", checkers());
   const auto judged = [&](const std::string& model, const std::string& options = "") {
-    REQUIRE(folder.run("eval in/house.obj " + model + " --samples 100 --appearance " + options +
-                       " > answer.json") == 0);
-    return nlohmann::json::parse(slurp(folder.path() / "answer.json"))["appearance"];
+    REQUIRE(folder.run("eval in/house.obj " + model + " --samples 100 --appearance " + options) ==
+            0);
+    return nlohmann::json::parse(slurp(folder.path() / "stdout"))["appearance"];
   };
   const nlohmann::json same = judged("in/house.obj", "--gsd 0.1");
   CHECK(same["psnr"].is_null());  // nothing differs
@@ -279,7 +276,7 @@ TEST_CASE("normal maps lie beside textures in buildings and for engines, which a
   CHECK(mapped >= 2);
   CHECK(points_of(files.at("buildings/house.layer2.obj")) ==
         points_of(plain.at("buildings/house.layer2.obj")));
-  CHECK(folder.run("info --check out > faults.json") == 0);
+  CHECK(folder.run("info --check out") == 0);
 }
 
 TEST_CASE("WebP is required of clients unless a JPEG stands beside it") {
@@ -303,7 +300,7 @@ TEST_CASE("WebP is required of clients unless a JPEG stands beside it") {
     CHECK(textured >= 3);  // the building's, the engine's, a tile
     CHECK(files.contains(has_fallback ? "buildings/house.layer2.jpg"
                                       : "buildings/house.layer2.webp"));
-    CHECK(folder.run("info --check out > faults.json") == 0);
+    CHECK(folder.run("info --check out") == 0);
   }
 }
 
