@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/error.h"
 #include "files.h"
+#include "formats.h"
 #include "implicit.h"
+#include "look.h"
 
 namespace colod {
 
