@@ -154,11 +154,9 @@ bool is_relief(const Planes& planes) {
          planes.plane_of_item.end();
 }
 
-bool is_roof(const Plane& plane) { return plane.normal.z() > kUpright; }
-
 // A wall that ends in the roof above it.
 bool hangs_from(const Plane& wall, const Plane& roof) {
-  if (std::abs(wall.normal.z()) > kUpright || !is_roof(roof)) return false;
+  if (std::abs(wall.normal.z()) > kUpright || roof.normal.z() <= kUpright) return false;
   const auto above = [&](const Vec3& v) { return roof.normal.dot(v) - roof.offset; };
   if (above(wall.centroid) > -kLeastHang) return false;
   const Box around = grown(bounding_box(roof.outline.vertices), kOnRoof);
@@ -178,31 +176,6 @@ void add_hanging_walls(const Planes& planes, std::vector<char>& is_in) {
       is_in[p] = before[q] && hangs_from(planes.planes[p], planes.planes[q]);
 }
 
-// m³ between a roof and a surface: `height` tells that at a place.
-template <typename Height>
-double volume_to(const Plane& roof, const Height& height) {
-  double sum = 0;
-  for (const Face& t : roof.outline.triangles) {
-    const Vec3 &a = roof.outline.vertices[t[0]], &b = roof.outline.vertices[t[1]],
-               &c = roof.outline.vertices[t[2]];
-    const Vec3 middle = (a + b + c) / 3;
-    sum += 0.5 * std::abs((b - a).cross(c - a).z()) * std::abs(middle.z() - height(middle));
-  }
-  return sum;
-}
-
-// m³ by which a relief changes where another roof's plane runs on over this one.
-double volume_between(const Plane& roof, const Plane& other) {
-  return volume_to(roof, [&](const Vec3& p) {
-    return (other.offset - other.normal.head<2>().dot(p.head<2>())) / other.normal.z();
-  });
-}
-
-Outline flattened(Outline outline) {
-  for (Vec3& v : outline.vertices) v.z() = 0;
-  return outline;
-}
-
 // Roofs of a relief that cover much of the plan are on each layer: what has no plane of its own
 // there is covered by a neighbour's, run on over yards and wings.
 void add_large_roofs(const Planes& planes, std::vector<char>& is_in) {
@@ -210,36 +183,11 @@ void add_large_roofs(const Planes& planes, std::vector<char>& is_in) {
   std::vector<double> covered;
   double total = 0;
   for (const Plane& p : planes.planes) {
-    covered.push_back(is_roof(p) ? p.normal.z() * sane_area(p) : 0);
+    covered.push_back(p.normal.z() > kUpright ? p.normal.z() * sane_area(p) : 0);
     total += covered.back();
   }
   for (std::size_t p = 0; p < is_in.size(); ++p)
     if (covered[p] > kRoofShare * total) is_in[p] = 1;
-}
-
-// So are those without which it would enclose much else: a small tower, or a yard.
-void add_weighty_roofs(const Planes& planes, double reach, std::vector<char>& is_in) {
-  if (!is_relief(planes)) return;
-  const std::vector<Plane>& all = planes.planes;
-  const auto over_foot = [&](const Plane& roof) {
-    return volume_to(roof, [&](const Vec3&) { return planes.box.min.z(); });
-  };
-  std::vector<Outline> flat;
-  std::vector<Box> boxes;
-  double total = 0;
-  for (const Plane& p : all) {
-    flat.push_back(flattened(p.outline));
-    boxes.push_back(bounding_box(flat.back().vertices));
-    total += is_roof(p) ? over_foot(p) : 0;
-  }
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    if (is_in[p] || !is_roof(all[p])) continue;
-    double least = over_foot(all[p]);
-    for (std::size_t q = 0; q < all.size() && least > kRoofVolume * total; ++q)
-      if (is_in[q] && is_roof(all[q]) && is_touching(flat[p], boxes[p], flat[q], boxes[q], reach))
-        least = std::min(least, volume_between(all[p], all[q]));
-    is_in[p] = least > kRoofVolume * total;
-  }
 }
 
 }  // namespace
@@ -258,13 +206,12 @@ std::vector<int> layer_planes(const Planes& planes, const Segments& segments,
       is_in[p] = layer_of_segment[s] <= k && !(layer_of_segment[s] == 0 && is_out[p]);
       is_out[p] = 1;
     }
-  const double reach = std::max(kLeastTouch, 2 * planes.distance);
   add_large_roofs(planes, is_in);
-  add_weighty_roofs(planes, reach, is_in);
   add_hanging_walls(planes, is_in);
 
   std::vector<Box> boxes;
   for (const Plane& p : planes.planes) boxes.push_back(bounding_box(p.outline.vertices));
+  const double reach = std::max(kLeastTouch, 2 * planes.distance);
   std::vector<int> result;
   for (std::size_t p = 0; p < n; ++p) {
     bool is_wanted = is_in[p];

@@ -13,8 +13,7 @@ constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, to
 constexpr double kSmallPlane = 0.01;    // … and each of them
 constexpr double kSpareShare = 0.005;   // of all planes' area: smaller ones never join layer 0 …
 constexpr double kSparesShare = 0.01;   // … nor do planes that have less together
-constexpr double kRoofShare = 0.1;      // of a relief's plan: such a roof is on each layer …
-constexpr double kRoofVolume = 0.02;    // … and one that its volume is worth as much as this
+constexpr double kRoofShare = 0.1;      // of a relief's plan: such a roof is on each layer
 constexpr double kThin = 0.05;          // metres: thinner is flat, and the whitening's floor
 constexpr double kThinRelative = 0.02;  // of the longest axis
 

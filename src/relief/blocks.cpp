@@ -48,7 +48,7 @@ class Blocks {
 
  private:
   double height(const Patch& p, int i) const { return p.height(f_.center(i) - f_.origin); }
-  double least() const { return std::max(kLeastBlock, kBlockNoise * s_.noise); }
+  double least() const { return std::max(kLeastStep, kBlockNoise * s_.noise); }
 
   Stand stand_from(int seed) {
     Stand stand{labels_.of_cell[seed], off_[seed] > 0 ? 1.0 : -1.0, {seed}};

@@ -61,7 +61,6 @@ class Labeller {
 
   Labels squared() {
     square();
-    drop_small();
     return {std::move(label_), std::move(patches_)};
   }
 
@@ -230,77 +229,11 @@ class Labeller {
     const std::vector<char> is_inside = mark([](int l) { return l >= 0; });
     for (int i = 0; i < f_.size(); ++i)
       if (label_[i] >= 0 && !is_inside[i]) label_[i] = kOutside;
-    drop_tails();
     for (int p = 0; p < static_cast<int>(patches_.size()); ++p) {
       const std::vector<char> is_own = mark([p](int l) { return l == p; });
       for (int i = 0; i < f_.size(); ++i)
         if (label_[i] == p && !is_own[i]) label_[i] = kOpen;
     }
-    spread(false);
-  }
-
-  /// A part of the plan that is narrower than the mesh can tell.
-  struct Tail {
-    std::vector<int> cells;
-    int joint = 0, free = 0, at_end = 0;  // sides of cells: to the building, to what is outside
-  };
-
-  Tail tail_from(int seed, const std::vector<char>& is_wide, std::vector<char>& is_done) const {
-    Tail tail{{seed}};
-    is_done[seed] = 1;
-    for (std::size_t k = 0; k < tail.cells.size(); ++k) {
-      const int i = tail.cells[k];
-      const auto around = f_.beside(i);
-      for (int way = 0; way < 4; ++way) {
-        const int j = around[way];
-        if (j < 0 || label_[j] < 0)
-          ++tail.free, tail.at_end += is_end_near(i, way);
-        else if (is_wide[j])
-          ++tail.joint;
-        else if (!is_done[j])
-          is_done[j] = 1, tail.cells.push_back(j);
-      }
-    }
-    return tail;
-  }
-
-  /// Going out of the building one meets the end of the mesh within the tolerance.
-  bool is_end_near(int i, int way) const {
-    const int most = static_cast<int>(std::ceil(tolerance_ / f_.cell));
-    for (int step = 0; step <= most; ++step) {
-      i = f_.beside(i)[way];
-      if (i < 0 || !f_.has(i)) return true;
-      if (label_[i] >= 0) return false;
-    }
-    return false;
-  }
-
-  /// Stubs that reach from the building to where the mesh ends are what was cut from next door.
-  void drop_tails() {
-    const double width = std::max(kTail, kTailSpans * span_);
-    std::vector<char> is_in(f_.size()), is_done(f_.size(), 0);
-    for (int i = 0; i < f_.size(); ++i) is_in[i] = label_[i] >= 0;
-    const double most = kTailArea * std::count(is_in.begin(), is_in.end(), 1);
-    const std::vector<char> is_wide =
-        opened(f_.columns, f_.rows, is_in, static_cast<int>(std::lround(width / f_.cell)));
-    for (int seed = 0; seed < f_.size(); ++seed) {
-      if (!is_in[seed] || is_wide[seed] || is_done[seed]) continue;
-      const Tail tail = tail_from(seed, is_wide, is_done);
-      const double cells = static_cast<double>(tail.cells.size());
-      const bool is_long = cells * f_.cell >= kTailDepth * width * tail.joint;
-      if (!is_long || cells > most || tail.at_end < kTailEnd * tail.free) continue;
-      for (const int i : tail.cells) label_[i] = kOutside;
-    }
-  }
-
-  void drop_small() {
-    std::vector<int> cells(patches_.size(), 0);
-    for (const int l : label_)
-      if (l >= 0) ++cells[l];
-    const double least = kLeastPatch * span_ * span_ / (f_.cell * f_.cell);
-    if (std::none_of(cells.begin(), cells.end(), [&](int n) { return n >= least; })) return;
-    for (int& l : label_)
-      if (l >= 0 && cells[l] < least) l = kOpen;
     spread(false);
   }
 

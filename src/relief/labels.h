@@ -27,8 +27,7 @@ struct Scales {
 /// of its own go to the neighbour whose height is nearest.
 Labels label_field(const Field& field, const Ground& ground, Patches patches, const Scales& scales);
 
-/// The same labels; what no square of twice the tolerance fits into, and what is smaller than a
-/// patch may be, goes to its neighbours.
+/// The same labels; what no square of twice the tolerance fits into goes to its neighbours.
 Labels square_labels(const Field& field, const Ground& ground, Labels labels, const Scales& scales);
 
 }  // namespace colod::relief

@@ -67,13 +67,8 @@ constexpr double kSlide = 0.85;      // metres a metre (40°): a strip so steep 
 constexpr double kSlideSpan = 0.8;   // … up to so many bumps on each side
 constexpr double kLeastPatch = 1.5;  // bumps' squares
 constexpr int kSmoothings = 4;
-constexpr double kTail = 1.8;       // metres, or …
-constexpr double kTailSpans = 2;    // … bumps: what is narrower, …
-constexpr double kTailDepth = 0.3;  // … as long as this times that, …
-constexpr double kTailEnd = 0.3;  // … and has the mesh's end along so much of its free border …
-constexpr double kTailArea = 0.1;  // … is a tail of next door, and no more than this of the plan
-constexpr double kMostOff = 9;     // squared, in noise: more is as bad
-constexpr double kIsland = 0.05;   // of the largest part: one that stands apart and is of it
+constexpr double kMostOff = 9;    // squared, in noise: more is as bad
+constexpr double kIsland = 0.05;  // of the largest part: one that stands apart and is of it
 constexpr double kLowIsland = 3, kLowIslandShare = 0.5;  // metres, and of its height: likewise
 
 // Borders.
@@ -91,8 +86,7 @@ constexpr double kLeastCrease = 0.12;  // metres a metre between the slopes of t
 constexpr double kCreaseReach = 2;     // tolerances between such a border and where planes meet
 
 // Blocks on roofs.
-constexpr double kLeastBlock = 0.6;      // metres, or …
-constexpr double kBlockNoise = 2;        // … times the noise: what stands off a roof
+constexpr double kBlockNoise = 2;        // times the noise: what stands off a roof
 constexpr std::size_t kMostBlocks = 24;  // of one building
 constexpr double kSloping = 0.8;         // of a level top's residual: a top slopes as its roof does
 constexpr double kSeenTop = 0.4;         // of its cells that are no walls
@@ -107,7 +101,6 @@ constexpr double kSameRoof = 2;      // times the noise, or …
 constexpr double kSameRise = 0.2;    // … metres from a larger roof's plane: a roof is of it
 constexpr double kLeastStep = 0.3;   // metres, or …
 constexpr double kStepNoise = 1.5;   // … times the noise: a step between roofs is a wall
-constexpr double kParted = 0.5;      // of the border of two roofs: with less they are one
 constexpr double kWallReach = 1.2;   // metres between a steep face and its wall
 constexpr double kBeside = 1.5;      // metres into the building that its neighbours hang over
 constexpr double kRoofReach = 1;     // metres between a face and its roof

@@ -14,7 +14,6 @@
 #include "core/rays.h"
 #include "field.h"
 #include "ground.h"
-#include "joins.h"
 #include "labels.h"
 #include "melting.h"
 #include "parameters.h"
@@ -93,7 +92,6 @@ Plan draw_plan(const Mesh& mesh, const Melting& melting, bool has_ground = true)
   regular_roofs(plan.field, plan.direction, plan.noise, plan.labels);
   raise_blocks(plan.field, scales, plan.labels);
   plan.labels = square_labels(plan.field, plan.ground, std::move(plan.labels), scales);
-  join_borderless(plan.field, scales, plan.labels);
   plan.borders =
       find_borders(plan.field, plan.labels, wall_samples(mesh), plan.direction, plan.tolerance);
   return plan;
@@ -116,7 +114,7 @@ std::optional<Piece> step_at(const Plan& plan, Piece piece) {
     return plan.raised(p, piece.left).z() - plan.raised(p, piece.right).z();
   };
   double first = step(piece.from), last = step(piece.to);
-  const double least = least_step(plan.noise);
+  const double least = std::max(kLeastStep, kStepNoise * plan.noise);
   const double mean = std::abs(first + last) / 2;
   const bool is_tapered = first * last < 0 || std::min(std::abs(first), std::abs(last)) < least / 2;
   if (mean < (is_tapered ? 2 * least : least)) return std::nullopt;

@@ -47,15 +47,7 @@ std::vector<Parameter> melted_numbers() {
       {"most_hanging", "", relief::kMostHanging,
        "of the rim of what is low: walls that hang below it, which make it a roof"},
       {"strip", "m", relief::kStrip, "half the width of what is cut from next door"},
-      {"tail", "m", relief::kTail, "width of a stub that reaches to the mesh's end: next door's"},
-      {"tail_spans", "", relief::kTailSpans, "bumps, of such a stub, where they are wider"},
-      {"tail_depth", "", relief::kTailDepth, "of that width: shorter is a corner"},
-      {"tail_end", "", relief::kTailEnd, "of a stub's border: where the mesh ends"},
-      {"tail_area", "", relief::kTailArea, "of the plan, at most"},
       {"roof_share", "", coanalysis::kRoofShare, "of the plan: a larger roof is on each layer"},
-      {"roof_volume", "", coanalysis::kRoofVolume,
-       "of the building's: so is a roof without which so much would be another; with 1 % one "
-       "building has more triangles and less support"},
       {"thin", "m", relief::kThin, "half the width of what is no roof of its own"},
       {"slide", "", relief::kSlide, "slope of a strip that is the side of a melted wall"},
       {"melted", "m", relief::kMelted, "length of a melted corner"},
@@ -69,11 +61,8 @@ std::vector<Parameter> melted_numbers() {
       {"same_roof", "", relief::kSameRoof,
        "times the noise from the plane of a larger roof: it is of it"},
       {"same_rise", "m", relief::kSameRise, "likewise"},
-      {"parted", "", relief::kParted,
-       "of the border of two roofs, that is a step or a crease: with less they are one"},
-      {"least_block", "m", relief::kLeastBlock,
-       "off a roof: lower ones were slits and ledges of a hand's breadth on drones' halls"},
-      {"block_noise", "", relief::kBlockNoise, "times the noise, likewise"},
+      {"block_noise", "", relief::kBlockNoise,
+       "times the noise: what stands off a roof and may be a block"},
       {"flat_top", "", relief::kFlatTop, "of a block's rise: residual of its top"},
       {"seen_top", "", relief::kSeenTop, "of a block's cells, that are no walls"},
       {"least_step", "m", relief::kLeastStep, "between roofs that have a wall between them"}};
@@ -92,10 +81,9 @@ RuleInfo melted_rule() {
           "Draws the mesh as heights along most of its border, parts the ground around, joins "
           "neighbouring pieces of roof while a plane explains less than it costs, raises blocks "
           "where the heights stand off a roof, draws borders onto few lines of few directions, and "
-          "hands on these roofs and the upright walls between them as planes; stubs that reach to "
-          "the mesh's end are left out, and roofs between which nothing steps or bends are one; a "
-          "roof over a tenth of the plan, or without which the volume would be off by 2 %, is on "
-          "each layer, and has all its walls on each layer that it is on.",
+          "hands on these roofs and the upright walls between them as planes; a roof over a tenth "
+          "of "
+          "the plan is on each layer, and has all its walls on each layer that it is on.",
       .paper = "The paper grows planes in space, of whatever surface.",
       .reason =
           "Each bump became a plane: of 47 buildings of a drone scene the finest layer had more "

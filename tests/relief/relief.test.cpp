@@ -156,51 +156,6 @@ TEST_CASE(
   }
 }
 
-/// A house of 16 × 12 m with a stub at one side, as long as there is mesh.
-Heights house_with_stub(double wide, double from) {
-  return [=](double x, double y) {
-    const bool is_in = std::abs(x) < 8 && std::abs(y) < 6;
-    const bool is_stub = x > 0 && std::abs(y - from) < wide / 2;
-    return (is_in || is_stub ? 6 : 0) + bump(x, y, 0.08);
-  };
-}
-
-TEST_CASE("a stub that reaches to the mesh's end is next door's, a wing is not") {
-  struct Case {
-    double edge, wide, deep;
-    bool is_kept;
-  };
-  for (const Case c : {Case{0.4, 1.4, 1.4, false},
-                       {1.6, 1.8, 2, false},
-                       {0.4, 4, 1.4, true},
-                       {1.2, 5, 1.8, true}}) {
-    INFO("edges of " << c.edge << " m, a stub of " << c.wide);
-    Mesh mesh = field(24, c.edge, house_with_stub(c.wide, 1));
-    std::erase_if(mesh.faces, [&](const Face& f) { return mesh.vertices[f[0]].x() > 8 + c.deep; });
-    const auto relief = find_relief(mesh);
-    REQUIRE(relief);
-    double end = 0;
-    for (const Relief::Part& p : relief->parts)
-      for (const std::vector<Vec3>& ring : p.rings)
-        for (const Vec3& v : ring) end = std::max(end, v.x());
-    CHECK((end > 8 + 0.7 * c.deep) == c.is_kept);
-  }
-}
-
-TEST_CASE("halves of a roof are one where nothing parts them, and two where they step") {
-  for (const double size : {16.0, 40.0})
-    for (const double step : {0.25, 0.8}) {
-      INFO(size << " m, a step of " << step);
-      const auto hall = [&](double x, double y) {
-        const bool is_in = std::abs(x) < size / 2 && std::abs(y) < size / 4;
-        return (is_in ? 7 + (x > 0 ? step : 0) : 0) + bump(x, y, 0.03);
-      };
-      const auto relief = find_relief(field(size + 4, 0.5, hall));
-      REQUIRE(relief);
-      CHECK(count(*relief, false) == (step > 0.5 ? 2 : 1));
-    }
-}
-
 TEST_CASE("a low roof between higher neighbours is no ground") {
   const auto court = [](double x, double y) {
     const double roof = std::abs(x) < 7 ? 4 : 11;  // strips of next door on two sides
