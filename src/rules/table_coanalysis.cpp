@@ -80,7 +80,8 @@ std::vector<RuleInfo> clustering_rules() {
                        "distance; samples of the same shape differ by up to 0.07"},
                       {"like", "", kLike,
                        "distance by shape and place to elements of the kind; chosen on synth "
-                       "--sizes mixed, seeds 1, 3 and 5, where strips of walls are 0.42 away"},
+                       "--sizes mixed, seeds 1, 3 and 5, where a tenth of the strips of walls are "
+                       "nearer than 0.42"},
                       {"voters", "", static_cast<double>(kLikeVoters), "nearest elements"},
                       {"votes", "", static_cast<double>(kLikeVotes), "of them for one kind"}},
        .needs = {},
