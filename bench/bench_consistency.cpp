@@ -218,6 +218,7 @@ void write_segments(const Scene& scene, const Truth& truth, const std::string& p
           {{"building", b.source.name},
            {"segment", s},
            {"type", type.count(s) ? type[s] : ""},
+           {"kind", name_of(d.kind)},
            {"layer", b.layer_of_segment[s]},
            {"share", share[s]},
            {"area", d.area},
@@ -227,6 +228,7 @@ void write_segments(const Scene& scene, const Truth& truth, const std::string& p
            {"alcove", b.segments.segments[s].is_alcove},
            {"planes", b.segments.segments[s].planes.size()},
            {"eigenvalues", {d.eigenvalues[0], d.eigenvalues[1], d.eigenvalues[2]}},
+           {"context", {d.context[0], d.context[1], d.context[2]}},
            {"box", {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]}},
            {"d2", d.d2}});
     }

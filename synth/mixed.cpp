@@ -1,5 +1,7 @@
 // *Based on:* nothing published; sizes are drawn evenly in their logarithm, for every kind in three
-// makes whose longest sides span about the same metres as all other kinds'.
+// makes whose longest sides, and the areas of whose surfaces, span about the same as all other
+// kinds': a balcony has 3 to 17 m² of surface, a window with its reveals 1 to 10, a chimney 2
+// to 17.
 //
 // *Differs:* no --rules here.
 //
@@ -12,8 +14,9 @@
 namespace colod::synth {
 namespace {
 
-constexpr int kHallEvery = 8;  // buildings a hall
-constexpr int kSizes = 3;      // of each kind in a street: small, middle, large
+constexpr int kHallEvery = 8;        // buildings a hall
+constexpr double kBelowEaves = 0.7;  // metres: the roof's edge hangs lower than the wall ends
+constexpr int kSizes = 3;            // of each kind in a street: small, middle, large
 const char* const kSizeNames[kSizes] = {"_small", "_middle", "_large"};
 
 /// What the street's builders had in store, three sizes of everything.
@@ -41,16 +44,16 @@ SizedPool::SizedPool(std::uint64_t street) {
   for (int i = 0; i < kSizes; ++i) {
     const std::string size = kSizeNames[i];
     const int other = (i + 1) % kSizes, last = (i + 2) % kSizes;  // deep ones are not the wide ones
-    windows.push_back({"window" + size, sized(r, 0.6, 3.0, i), sized(r, 0.7, 2.2, i),
-                       sized(r, 0.12, 0.55, other), i, r.chance(0.5), false});
+    windows.push_back({"window" + size, sized(r, 1.1, 3.2, i), sized(r, 1.15, 2.3, i),
+                       sized(r, 0.12, 0.45, i), i, r.chance(0.5), false});
     arched.push_back({"window_arched" + size, sized(r, 0.6, 1.8, i), sized(r, 1.2, 3.0, i),
                       sized(r, 0.12, 0.45, other), 0, false, true});
     doors.push_back(
-        {"door" + size, sized(r, 0.8, 3.0, i), sized(r, 1.9, 2.9, i), sized(r, 0.12, 0.55, last)});
-    french.push_back({"door_french" + size, r.size(0.45, 0.8), sized(r, 1.25, 2.3, i),
-                      sized(r, 0.12, 0.55, last)});
-    balconies.push_back({"balcony" + size, sized(r, 0.9, 3.2, i),
-                         sized(r, 0.6, 1.2, kSizes - 1 - i), sized(r, 0.45, 1.1, i)});
+        {"door" + size, sized(r, 0.8, 3.0, i), sized(r, 1.9, 2.9, i), sized(r, 0.12, 0.45, last)});
+    french.push_back({"door_french" + size, sized(r, 0.6, 2.8, i), sized(r, 1.55, 2.35, i),
+                      sized(r, 0.12, 0.45, i)});
+    balconies.push_back(
+        {"balcony" + size, sized(r, 1.1, 3.2, i), sized(r, 0.5, 1.2, i), sized(r, 0.42, 1.1, i)});
     for (bool is_shed : {false, true})
       dormers.push_back({(is_shed ? "dormer_shed" : "dormer_gabled") + size, is_shed,
                          sized(r, 0.9, 3.0, i), sized(r, 0.8, 1.6, i)});
@@ -59,9 +62,9 @@ SizedPool::SizedPool(std::uint64_t street) {
     const double bay = sized(r, 1.0, 3.0, i);
     bays.push_back({"bay" + size, bay, sized(r, 0.4, 1.0, i), r.chance(0.5) ? 0 : 0.15 * bay});
     loggias.push_back(
-        {"loggia" + size, sized(r, 1.2, 3.2, i), r.size(2.2, 2.4), sized(r, 0.55, 1.3, i)});
-    ornaments.push_back({"ornament" + size, sized(r, 0.5, 3.0, i), sized(r, 0.5, 3.0, i),
-                         sized(r, 0.1, 0.9, other)});
+        {"loggia" + size, sized(r, 1.1, 3.2, i), sized(r, 1.9, 2.5, i), sized(r, 0.55, 1.3, i)});
+    ornaments.push_back(
+        {"ornament" + size, sized(r, 1.0, 3.2, i), sized(r, 0.9, 3.0, i), sized(r, 0.1, 0.6, i)});
   }
 }
 
@@ -110,6 +113,18 @@ const Model& draw_sized(Random& r, const std::vector<Model>& models, int size) {
   return models[size * makes + r.pick(makes)];
 }
 
+/// Of the makes that leave a quarter of a metre on both sides, half of the time the widest.
+template <typename Model>
+const Model& draw_fitting(Random& r, const std::vector<Model>& models, double width,
+                          double height) {
+  constexpr double kBeside = 0.25, kAbove = 0.1;
+  std::vector<const Model*> fitting;
+  for (const Model& m : models)
+    if (m.width + 2 * kBeside <= width && m.height + kAbove <= height) fitting.push_back(&m);
+  if (fitting.empty()) return models.front();
+  return r.chance(0.5) ? *fitting.back() : *fitting[r.pick(static_cast<int>(fitting.size()))];
+}
+
 /// Large parts come first, while there is room for them.
 int size_of_attempt(int attempt, int attempts) { return kSizes - 1 - kSizes * attempt / attempts; }
 
@@ -128,11 +143,20 @@ void scatter_on_roof(House& house, int facet, const SizedPool& pool) {
   }
 }
 
+void scatter_bay(House& house, int facet, double u, const SizedPool& pool, const BayModel& bay) {
+  constexpr double kLeastHeight = 0.9, kSill = 0.6;
+  Random& r = house.random;
+  const double most = 0.5 * house.solid.facet(facet).height();
+  const double v = r.uniform(0.3, most - kBelowEaves), height = r.uniform(kLeastHeight, most);
+  const WindowModel& window =
+      draw_fitting(r, pool.windows, bay.width - 2 * bay.splay, height - kSill);
+  add_bay(house, facet, u, v, height, 3, bay, window);
+}
+
 /// Whatever sticks out or goes in keeps so far from a wall's ends that what two walls have does not
 /// meet in a corner.
 void scatter_on_wall(House& house, int facet, const SizedPool& pool, bool has_corners) {
   constexpr double kFromEnd = 1.75, kOrnamentFromEnd = 1.4, kDoorHeight = 2.4;
-  constexpr double kBelowEaves = 0.7;  // the roof's edge hangs lower than the wall ends
   Random& r = house.random;
   const double width = house.solid.facet(facet).width(), height = house.solid.facet(facet).height();
   const int attempts = std::min(24, 3 + static_cast<int>(width * height / 7));
@@ -147,20 +171,21 @@ void scatter_on_wall(House& house, int facet, const SizedPool& pool, bool has_co
       if (u >= least && u <= width - least) add_ornament(house, facet, u, v, ornament);
     } else if (kind < 0.6) {
       const double v = r.uniform(0.6, std::max(0.7, height - kDoorHeight));
-      add_balcony(house, facet, r.uniform(0, width), v, draw_sized(r, pool.balconies, size),
-                  draw(r, pool.french));
+      const BalconyModel& balcony = draw_sized(r, pool.balconies, size);
+      add_balcony(house, facet, r.uniform(0, width), v, balcony,
+                  draw_fitting(r, pool.french, balcony.width, height - v));
     } else {
       const LoggiaModel& loggia = draw_sized(r, pool.loggias, size);
       const BayModel& bay = draw_sized(r, pool.bays, size);
+      const DoorModel& door = draw_fitting(r, pool.french, loggia.width, loggia.height);
       const double least = kFromEnd + std::max(loggia.width, bay.width) / 2;
       const double u = r.uniform(least, width - least);
       if (u < least || u > width - least) continue;
       if (kind < 0.8)
         add_loggia(house, facet, u, r.uniform(0.4, std::max(0.5, height - kDoorHeight - 0.2)),
-                   loggia, draw(r, pool.french));
+                   loggia, door);
       else
-        add_bay(house, facet, u, r.uniform(0.3, 0.5 * height - kBelowEaves),
-                r.uniform(0.9, 0.5 * height), 3, bay, pool.windows[0]);
+        scatter_bay(house, facet, u, pool, bay);
     }
   }
 }
@@ -199,9 +224,8 @@ House make_plain(const Frame& frame, const SizedPool& pool, std::uint64_t seed) 
                                            .thickness = 0.16});
   add_door(house, body.front, house.width / 2, 0.12, draw(r, pool.doors));
   const Facade facade = {.floors = {0.1}, .spacing = frame.spacing, .sill = frame.sill};
-  const WindowModel& window = draw(r, pool.windows);
   for (int wall : {body.front, body.right, body.back, body.left})
-    add_windows(house, wall, facade, window);
+    add_windows(house, wall, facade, draw(r, pool.windows));
   scatter_parts(house, pool);
   return house;
 }

@@ -1,4 +1,5 @@
 // Streets in which no size tells a kind.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -17,6 +18,24 @@ std::vector<SynthPart> parts_of(SynthSizes sizes, std::uint64_t seed) {
   return parts;
 }
 
+struct Sized {
+  double area = 0;
+  bool is_large = false;  ///< of a kind for layer 1
+};
+
+std::map<ElementKind, std::vector<Sized>> areas_of(std::uint64_t seed, int buildings) {
+  std::map<ElementKind, std::vector<Sized>> kinds;
+  for (const SynthBuilding& b :
+       make_neighbourhood({.buildings = buildings, .seed = seed, .sizes = SynthSizes::kMixed})) {
+    std::map<int, double> area;
+    for (std::size_t f = 0; f < b.source.mesh.faces.size(); ++f)
+      area[b.source.face_object[f]] += face_area(b.source.mesh, b.source.mesh.faces[f]);
+    for (const SynthPart& p : b.parts)
+      if (p.level > 0) kinds[p.kind].push_back({area[p.instance], p.level == 1});
+  }
+  return kinds;
+}
+
 }  // namespace
 
 TEST_CASE("with mixed sizes the kind decides on the layer") {
@@ -29,6 +48,25 @@ TEST_CASE("with mixed sizes the kind decides on the layer") {
   CHECK(levels.at(ElementKind::kOrnament) == 2);
   CHECK(levels.at(ElementKind::kDormer) == 1);
   CHECK(levels.at(ElementKind::kBalcony) == 1);
+}
+
+TEST_CASE("a threshold on area that is told how many parts are large keeps no kinds together") {
+  for (const std::uint64_t seed : {1, 3, 5, 7})
+    for (const int buildings : {8, 16}) {
+      INFO("seed " << seed << ", " << buildings << " buildings");
+      const auto kinds = areas_of(seed, buildings);
+      std::vector<double> all;
+      std::size_t large = 0, kept = 0;
+      for (const auto& [kind, parts] : kinds)
+        for (const Sized& s : parts) all.push_back(s.area), large += s.is_large;
+      std::sort(all.rbegin(), all.rend());
+      for (const auto& [kind, parts] : kinds) {
+        const auto above = std::count_if(parts.begin(), parts.end(),
+                                         [&](const Sized& s) { return s.area >= all[large - 1]; });
+        kept += std::max<std::size_t>(above, parts.size() - above);
+      }
+      CHECK(static_cast<double>(kept) < 0.82 * static_cast<double>(all.size()));
+    }
 }
 
 TEST_CASE("dormers have three sizes, and a hall stands among cottages") {
