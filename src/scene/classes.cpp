@@ -84,10 +84,16 @@ float part(float value, double from, double to) {
 std::vector<float> plantness(const HeightMap& map, const std::vector<float>& ground) {
   const Flatness flat =
       measure_flatness(map, static_cast<int>(std::lround(kWindow / map.cell / 2)));
+  const Flatness narrow =
+      measure_flatness(map, static_cast<int>(std::lround(kNarrowWindow / map.cell / 2)));
   std::vector<float> out(map.size(), NAN);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map.top[i] - ground[i] > kLow)) continue;
-    out[i] = static_cast<float>(kRoughWeight) * part(flat.roughness[i], kEven, kUneven);
+    const bool is_green = !map.color.empty() && greenness(map.color[i]) > kGrey;
+    const float rough = is_green ? flat.roughness[i]
+                                 : std::min(flat.roughness[i],
+                                            static_cast<float>(kSteepRoof) * narrow.roughness[i]);
+    out[i] = static_cast<float>(kRoughWeight) * part(rough, kEven, kUneven);
     if (!map.color.empty())
       out[i] += static_cast<float>(kGreenWeight) * part(greenness(map.color[i]), kGrey, kGreen);
   }

@@ -21,6 +21,10 @@ struct SceneClasses {
 /// Deterministic.
 SceneClasses classify(const HeightMap& map);
 
+/// Houses that share walls → each a building of its own, along straight lines across their block at
+/// which roofs step or change their colour. O(cells). Deterministic.
+void part_rows(const HeightMap& map, SceneClasses& classes);
+
 /// The plan of each building: its cells' border, straightened along the building's own directions.
 /// Attributes: height over the ground and area.
 std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasses& classes);

@@ -84,6 +84,8 @@ constexpr double kNoiseOfCell = 0.3;  // metres over what is expected, and …
 constexpr double kSlope = 0.12;       // … of a block's side: low roofs fill small blocks
 constexpr double kAboveGround = 0.5;  // metres
 constexpr double kJoined = 0.6;       // of a hill's rim that goes on smoothly, drops the rest
+constexpr double kFootRim = 0.3;  // of a level's steps that go down, where walls rise from it …
+constexpr double kFootJoined = 0.15;  // … and of its rim that goes on smoothly for it to be ground
 constexpr double kLevelStep = 0.2;    // metres between neighbours that are one level
 constexpr double kLeastLevel = 15;    // m²
 constexpr double kWall = 1.2;         // metres that a roof's rim steps down
@@ -99,8 +101,11 @@ constexpr double kLeastLean = 0.08;  // metres a metre
 // Chosen on drawn footprints of halls and houses (development); docs/scenes.md has the figures.
 namespace colod::parameters::classes {
 
-constexpr double kLow = 1.5;                   // metres over the ground: lower things are its own
-constexpr double kWindow = 3.6;                // metres: narrower than half of a small gable roof
+constexpr double kLow = 1.5;     // metres over the ground: lower things are its own
+constexpr double kWindow = 3.6;  // metres: narrower than half of a small gable roof
+constexpr double kNarrowWindow =
+    1.7;                            // metres: half of a wing of a steep roof, if it is not green;
+constexpr double kSteepRoof = 3.2;  // that is rough all the same where this many times less wide
 constexpr double kEven = 0.08, kUneven = 0.4;  // metres off a plane: of roofs, of crowns
 constexpr double kGrey = 0.04, kGreen = 0.16;  // of roofs, of leaves
 constexpr double kRoughWeight = 0.7, kGreenWeight = 0.7;
@@ -120,6 +125,27 @@ constexpr double kHeightShare = 0.7;   // of a roof's cells …
 constexpr double kLeastHeight = 2.2;   // … at least so high
 
 }  // namespace colod::parameters::classes
+
+// Chosen on made-up rows (seeds 1 and 3) and on the drawn footprints of two real scenes; all of
+// them are development. docs/log/quality.md has the figures.
+namespace colod::parameters::party_walls {
+
+constexpr double kBlurred = 0.6;       // metres beside a line in which heights are of both sides
+constexpr double kStripEnd = 1.6;      // metres beside a line that are compared
+constexpr double kPiece = 3.5;         // metres of a line: roofs slope alike along it
+constexpr double kLeastStep = 0.15;    // metres of height across a line
+constexpr double kLeastTint = 25;      // of 255: how one channel of the colour changes across it
+constexpr double kAlike = 0.6;         // of a line's pieces that step the same way
+constexpr double kShortest = 4.5;      // metres of a line
+constexpr double kLongest = 25;        // metres of a line: halls are deeper than houses
+constexpr double kHouseWidth = 3.5;    // metres beside a line …
+constexpr double kWhole = 0.7;         // … that are the building's along this share of it
+constexpr double kNarrowest = 4;       // metres between two walls
+constexpr double kBeyond = 1.5;        // cells that a wall goes on at both ends
+constexpr double kLeastRowHouse = 30;  // m²
+constexpr int kJoinRounds = 10;
+
+}  // namespace colod::parameters::party_walls
 
 namespace colod::parameters::outlines {
 

@@ -120,10 +120,13 @@ class Levels {
   Levels(const Grid& top, double cell, std::vector<char>& is_ground)
       : top_(top), cell_(cell), is_ground_(is_ground) {}
 
-  /// Hills: what goes on smoothly into ground, more than it drops, is ground.
+  /// Hills: what goes on smoothly into ground, more than it drops, is ground; of what mostly walls
+  /// rise from, as from streets and gardens, some of its rim is enough.
   void join_hills() {
     each_level(false, [&](const Level& level) {
-      if (level.smooth > kJoined * (level.down + level.smooth)) mark(level, 1);
+      const bool is_foot = level.down < kFootRim * (level.down + level.up);
+      const double least = is_foot ? kFootJoined : kJoined;
+      if (level.smooth > least * (level.down + level.smooth)) mark(level, 1);
     });
   }
 

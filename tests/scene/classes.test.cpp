@@ -143,6 +143,19 @@ TEST_CASE("on slopes and hills ground stays ground and houses are found") {
   CHECK(hill.ground_error(found) < 0.3);
 }
 
+TEST_CASE("a hill in a corner that houses and trees stand on is ground") {
+  for (const double height : {9.0, 14.0}) {
+    Place place(160, [&](double x, double y) {
+      const double far = std::hypot(160 - x, y) / 90;
+      return 5 + (far < 1 ? height * (1 + std::cos(M_PI * far)) / 2 : 0);
+    });
+    place.house(20, 100, 12, 9, 6).house(60, 20, 12, 10, 6).house(118, 12, 12, 9, 6);
+    place.house(136, 34, 10, 10, 5).tree(120, 40, 4, 7).tree(144, 14, 4, 7);
+    CAPTURE(height);
+    CHECK(place.ground_error(classify(place.map())) < 1);
+  }
+}
+
 TEST_CASE("in a dense quarter ground is found in streets and yards, on slopes, too") {
   struct Quarter {
     double east, north;     // slopes

@@ -1,0 +1,103 @@
+// Rows of houses on made-up height maps, parted along their party walls.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "scene/classes.h"
+
+using namespace colod;
+
+namespace {
+
+struct RowHouse {
+  double width, eaves;
+  Rgb color = {170, 90, 80};
+};
+
+/// Houses side by side from (10, 10) on, 10 m deep, under one gable along the row, turned; noise of
+/// 3 cm.
+struct Row {
+  HeightMap map;
+  SceneClasses classes;
+  std::vector<int> truth;  ///< per cell: the house; −1: none
+
+  Row(const std::vector<RowHouse>& houses, double angle, double cell) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 0.03);
+    map.cell = cell, map.width = map.height = static_cast<int>(90 / cell);
+    const Vec2 along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        const Vec2 p = map.middle(x, y) - Vec2(35, 10);
+        double u = p.dot(along);
+        const double v = p.dot(across);
+        int house = u < 0 || v < 0 || v > 10 ? -1 : 0;
+        while (house >= 0 && u > houses[static_cast<std::size_t>(house)].width) {
+          u -= houses[static_cast<std::size_t>(house)].width;
+          if (++house == static_cast<int>(houses.size())) house = -1;
+        }
+        const auto h = static_cast<std::size_t>(std::max(0, house));
+        const double z = house < 0 ? 0 : houses[h].eaves + 0.6 * (5 - std::abs(v - 5));
+        map.top.push_back(static_cast<float>(z + noise(random)));
+        map.color.push_back(house < 0 ? Rgb{120, 120, 120} : houses[h].color);
+        truth.push_back(house);
+      }
+    classes.building = truth;
+    for (int& b : classes.building) b = std::min(b, 0);
+    classes.buildings = 1;
+    classes.ground.assign(map.size(), 0);
+    part_rows(map, classes);
+  }
+
+  /// Houses of which one building has at least seven tenths, and they of it: a wall may stand two cells beside
+  /// where it is.
+  int found(int houses) const {
+    int count = 0;
+    for (int h = 0; h < houses; ++h)
+      for (int b = 0; b < classes.buildings; ++b) {
+        double both = 0, any = 0;
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+          const bool is_own = truth[i] == h, is_found = classes.building[i] == b;
+          both += is_own && is_found, any += is_own || is_found;
+        }
+        count += both > 0.7 * any;
+      }
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("rows are parted where roofs step, turned and in cells of any size") {
+  for (const double angle : {0.0, 0.3, 1.2})
+    for (const double cell : {0.4, 0.5}) {
+      CAPTURE(angle, cell);
+      const Row row({{6, 6}, {7, 6.8}, {6.5, 9}, {8, 8.2}}, angle, cell);
+      CHECK(row.classes.buildings == 4);
+      CHECK(row.found(4) == 4);
+    }
+}
+
+TEST_CASE("rows of one height are parted where their colour changes") {
+  const Row row({{7, 6}, {8, 6, {90, 90, 95}}, {6, 6, {190, 110, 90}}}, 0.2, 0.4);
+  CHECK(row.classes.buildings == 3);
+  CHECK(row.found(3) == 3);
+}
+
+TEST_CASE("what is alike, too small or too deep is not parted") {
+  for (const double angle : {0.0, 0.5}) {
+    CHECK(Row({{12, 6}}, angle, 0.4).classes.buildings == 1);
+    CHECK(Row({{6, 6}, {7, 6}, {8, 6}}, angle, 0.4).classes.buildings == 1);
+    CHECK(Row({{8, 6}, {2.5, 8}}, angle, 0.4).classes.buildings == 1);
+  }
+}
+
+TEST_CASE("a place without buildings stays as it is") {
+  HeightMap map;
+  map.width = map.height = 10, map.cell = 0.4;
+  map.top.assign(100, 0);
+  SceneClasses classes;
+  classes.building.assign(map.size(), -1);
+  part_rows(map, classes);
+  CHECK(classes.buildings == 0);
+}
