@@ -49,8 +49,8 @@ struct Row {
     part_rows(map, classes);
   }
 
-  /// Houses of which one building has at least seven tenths, and they of it: a wall may stand two cells beside
-  /// where it is.
+  /// Houses of which one building has at least seven tenths, and they of it: a wall may stand two
+  /// cells beside where it is.
   int found(int houses) const {
     int count = 0;
     for (int h = 0; h < houses; ++h)
