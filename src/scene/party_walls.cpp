@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cell_borders.h"
+#include "core/flat.h"
 #include "parameters.h"
 
 namespace colod {
@@ -63,13 +64,6 @@ Turned turned(const HeightMap& map, const std::vector<int>& building,
   return out;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// Cells beside a line that count: beyond what is blurred.
 struct Strip {
   int near, far;
@@ -100,8 +94,7 @@ double step_across(const std::vector<int>& rows, const Strip& strip, std::size_t
     steps.push_back(std::copysign(std::max(0.0, std::abs(step) - slope), step) /
                     static_cast<double>(end - i));
   }
-  std::vector<double> sorted = steps;
-  const double middle = median(sorted);
+  const double middle = upper_median(steps);
   double alike = 0;
   for (const double step : steps) alike += step * middle > 0 && step / middle > 0.5;
   return alike < kAlike * static_cast<double>(steps.size()) ? 0 : std::abs(middle);
