@@ -101,7 +101,7 @@ double step_across(const std::vector<int>& rows, const Strip& strip, std::size_t
 }
 
 double score_of(const Turned& t, const std::vector<int>& rows, int x, const Strip& strip) {
-  const auto piece = static_cast<std::size_t>(std::lround(kPiece / t.map.cell));
+  const auto piece = static_cast<std::size_t>(std::max(1L, std::lround(kPiece / t.map.cell)));
   const double step =
       step_across(rows, strip, piece, [&](int k, int y) { return double(t.top(x + k, y)); });
   double tint = 0;
