@@ -17,7 +17,6 @@
 #include "clustering_spectrum.h"
 #include "core/flat.h"
 #include "k_means.h"
-#include "likeness.h"
 #include "parameters.h"
 
 namespace colod {
@@ -27,17 +26,17 @@ using namespace parameters::coanalysis;
 
 constexpr double kLeastExtent = 1e-3;  // metres, for logarithms
 
-/// Per segment the group that must not be parted: a kind's, or its own; numbered by first members.
-std::vector<int> must_links(const std::vector<ElementKind>& kinds) {
+/// Segments that must be of one kind: the group of each, numbered by first members.
+std::vector<int> must_links(const std::vector<Descriptor>& segments) {
   std::vector<int> group;
   std::map<ElementKind, int> of_kind;
   int groups = 0;
-  for (const ElementKind kind : kinds) {
-    if (kind == ElementKind::kPlain) {
+  for (const Descriptor& d : segments) {
+    if (!has_kind(d)) {
       group.push_back(groups++);
       continue;
     }
-    const auto [at, is_new] = of_kind.try_emplace(kind, groups);
+    const auto [at, is_new] = of_kind.try_emplace(d.kind, groups);
     groups += is_new;
     group.push_back(at->second);
   }
@@ -109,7 +108,7 @@ Kinds find_kinds(const std::vector<Descriptor>& segments, int count, double eta,
   kinds.eigenvalues = spectrum.values;
   kinds.has_converged = std::ssize(spectrum.values) >= count;
   if (!kinds.has_converged) return kinds;
-  const std::vector<int> group = must_links(likely_kinds(segments, eta));
+  const std::vector<int> group = must_links(segments);
   const Eigen::Index groups = *std::max_element(group.begin(), group.end()) + 1;
   Features rows = Features::Zero(groups, count);
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(groups);

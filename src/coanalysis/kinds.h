@@ -15,8 +15,8 @@ struct Kinds {
 };
 
 /// At most `count` kinds of segments that are alike by kind_similarity: the spectrum's first
-/// `count` eigenvectors, rows of unit length, k-means. Elements of one kind are never parted, nor
-/// is what repeats them (likeness.h). Fewer kinds where fewer differ. Deterministic; uses threads.
+/// `count` eigenvectors, rows of unit length, k-means. Elements of one kind are never parted. Fewer
+/// kinds where fewer differ. Deterministic; uses threads.
 Kinds find_kinds(const std::vector<Descriptor>& segments, int count, double eta,
                  std::uint64_t seed);
 

@@ -66,27 +66,19 @@ std::vector<RuleInfo> clustering_rules() {
            "and end, how much of them looks up, and which are elements of one kind.",
        .does =
            "Finds four times as many kinds as layers by as many eigenvectors, with rows of unit "
-           "length; elements of a kind are one row, and so is what no detector told and repeats "
-           "their shape and place, whatever its size. Kinds come by falling median extent, and "
+           "length; elements of a kind are one row. Kinds come by falling median extent, and "
            "are parted into runs in which its logarithms differ least, so that a kind is never "
            "split over two layers. Where fewer kinds than layers differ, size decides.",
        .paper = "As many clusters as layers, each a layer, by falling mean volume.",
        .reason =
            "With as many eigenvectors as layers one extent reproduced 348 of 349 assignments; "
-           "with more, chimneys, windows, doors and strips of roofs are kinds of their own. "
-           "Detectors have limits in metres, which a dormer of a hall and a chimney of a hut pass.",
+           "with more, chimneys, windows, doors and strips of roofs are kinds of their own.",
        .parameters = {{"kinds_a_layer", "", kKindsALayer, "chosen on synth-scan, seeds 1 and 2"},
                       {"same_kind", "", kSameKind,
-                       "distance; samples of the same shape differ by up to 0.07"},
-                      {"like", "", kLike,
-                       "distance by shape and place to elements of the kind; chosen on synth "
-                       "--sizes mixed, seeds 1, 3 and 5, where a tenth of the strips of walls are "
-                       "nearer than 0.42"},
-                      {"voters", "", static_cast<double>(kLikeVoters), "nearest elements"},
-                      {"votes", "", static_cast<double>(kLikeVotes), "of them for one kind"}},
+                       "distance; samples of the same shape differ by up to 0.07"}},
        .needs = {},
        .test = "coanalysis/clustering: elements of a kind are on one layer, whatever their size",
-       .made_on = {"synth", "synth-scan", "synth-mixed"}},
+       .made_on = {"synth", "synth-scan"}},
       {.rule = Rule::kSmallPlanes,
        .id = "layers.small",
        .title = "small planes of layer 0's segments wait for the finest layer",

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "coanalysis/clustering_neighbours.h"
-#include "coanalysis/likeness.h"
 #include "core/parallel.h"
 #include "selection_helpers.h"
 #include "similarity_helpers.h"
@@ -78,35 +77,6 @@ TEST_CASE("elements of a kind are on one layer, whatever their size") {
     std::size_t members = 0;
     for (const KindFacts& k : c.kinds) members += k.segments;
     CHECK(members == segments.size());
-  }
-}
-
-TEST_CASE("what no detector told is of the kind that it repeats") {
-  for (const int elements : {2, 3, 5, 200}) {
-    std::mt19937_64 random(elements);
-    std::vector<Descriptor> segments;
-    const auto add = [&](ElementKind kind, int shape, double extent, const Vec3& context) {
-      segments.push_back(of_kind(shape, extent, random));
-      segments.back().kind = kind, segments.back().context = context;
-    };
-    const Vec3 on_roof(0.4, 0.8, 0.9), below(0, 0.1, 0.3);
-    for (int i = 0; i < elements; ++i) add(ElementKind::kDormer, 2, 0.5, on_roof);
-    for (int i = 0; i < elements; ++i) add(ElementKind::kBalcony, 1, 0.8, below);
-    for (const double extent : {0.1, 0.5, 4.0}) add(ElementKind::kPlain, 2, extent, on_roof);
-    add(ElementKind::kPlain, 2, 0.5, below);    // of a dormer's shape, at the foot of a wall
-    add(ElementKind::kPlain, 3, 0.5, on_roof);  // of another shape
-    const std::vector<ElementKind> kinds = likely_kinds(segments, 4);
-    const std::size_t first = 2 * elements;
-    const ElementKind expected = elements < 3 ? ElementKind::kPlain : ElementKind::kDormer;
-    INFO(elements << " elements of each kind");
-    for (std::size_t i = 0; i < first; ++i) CHECK(kinds[i] == segments[i].kind);
-    for (std::size_t i = first; i < first + 3; ++i) CHECK(kinds[i] == expected);
-    CHECK(kinds[first + 3] == ElementKind::kPlain);
-    CHECK(kinds[first + 4] == ElementKind::kPlain);
-    if (elements < 3) continue;
-    for (int i = 0; i < 12; ++i) add(ElementKind::kPlain, 5, 8.0, below);  // strips of walls
-    const Clustering c = cluster_segments(segments, {.layers = 4});
-    for (std::size_t i = first; i < first + 3; ++i) CHECK(c.layer[i] == c.layer[0]);
   }
 }
 
