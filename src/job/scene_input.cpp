@@ -313,6 +313,11 @@ std::vector<PlaceDoubt> doubts_of(const ReadOptions& read, const Inventory& inve
   return doubts;
 }
 
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
 /// They are taken for buildings: a failure of each that looks like a scene, though it is built, and
 /// a warning where it may be.
 void tell_doubts(const std::vector<PlaceDoubt>& doubts, Inventory& inventory) {
@@ -328,12 +333,10 @@ void tell_doubts(const std::vector<PlaceDoubt>& doubts, Inventory& inventory) {
   }
 }
 
-/// Why the one file that is named is a scene; empty: it is none, or there are several.
-std::string whole_place(const std::vector<std::string>& inputs,
-                        const std::vector<PlaceDoubt>& doubts) {
-  const bool is_one_file =
-      inputs.size() == 1 && doubts.size() == 1 && std::filesystem::is_regular_file(inputs[0]);
-  return is_one_file ? doubts[0].place : "";
+/// Why the one file that there is, named or in the folder that is, is a scene; empty: it is none,
+/// or there are several.
+std::string whole_place(const std::vector<PlaceDoubt>& doubts) {
+  return doubts.size() == 1 ? doubts[0].place : "";
 }
 
 /// The meshes of a scene as its tiles.
@@ -413,8 +416,12 @@ Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& re
   out.inventory = take_inventory(inputs, read);
   if (choice.mode == SceneMode::kAuto) {
     const std::vector<PlaceDoubt> doubts = doubts_of(read, out.inventory);
-    if (const std::string why = whole_place(inputs, doubts); !why.empty())
-      return open_scene(inputs[0], why, read, choice, output, tell);
+    if (const std::string why = whole_place(doubts); !why.empty()) {
+      Inputs place = open_scene(out.inventory.files[0].path, why, read, choice, output, tell);
+      append(place.inventory.warnings, out.inventory.warnings);
+      append(place.inventory.failures, out.inventory.failures);
+      return place;
+    }
     tell_doubts(doubts, out.inventory);
   }
   if (!choice.footprints.empty())

@@ -1,8 +1,6 @@
 // Inside the store: SQLite's statements, and the rows of one building.
 #pragma once
 
-#include <sqlite3.h>
-
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -16,6 +14,9 @@
 
 #include "core/error.h"
 #include "store.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
 
 namespace colod {
 
@@ -113,6 +114,8 @@ struct Database {
 
   /// `flags` of SQLite. Throws Error, kOutput where it may be made.
   void open(int flags);
+  /// To read and write what is there.
+  void open_existing();
   /// Whether the last call failed since the file is no whole database.
   bool is_damaged() const;
   /// Whether all its pages and keys are as they must be; what rows hold may be anything.
@@ -133,7 +136,7 @@ void remove_foreign(const std::string& path, const char* is_what,
   if (!std::filesystem::exists(path)) return;
   Kind found;
   found.path = path;
-  found.open(SQLITE_OPEN_READWRITE);
+  found.open_existing();
   if (found.is_intact() && found.is_of_its_kind()) return;
   tell(path + ": is " + is_what + ": made anew");
   remove_database(path);

@@ -103,6 +103,8 @@ void Database::open(int flags) {
                 std::string("cannot be opened: ") + sqlite3_errmsg(db));
 }
 
+void Database::open_existing() { open(SQLITE_OPEN_READWRITE); }
+
 bool Database::is_damaged() const {
   const int code = sqlite3_errcode(db);
   return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;

@@ -381,6 +381,21 @@ TEST_CASE("a place that is given as one mesh is taken apart, and one house on it
   CHECK(report(folder)["buildings"].size() == 1);
 }
 
+TEST_CASE("a folder with one file is that file: a place, whatever else lies beside it") {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder.path / "in");
+  const bool is_place = GENERATE(true, false);
+  folder.write("in/place.obj", obj_text(measured_place(is_place ? row_and_two() : kRow)));
+  folder.write("in/plan.docx", "nothing");
+  const Ended run = build(folder, (folder.path / "in").string());
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  CHECK((run.err.find("taken for a scene, since 3 buildings stand apart") != std::string::npos) ==
+        is_place);
+  CHECK_THAT(run.err, Contains("plan.docx") || Contains("docx"));  // which is not read
+  CHECK(report(folder)["buildings"].size() == (is_place ? 4 : 1));
+}
+
 TEST_CASE("of several meshes one that is a place is told of, and built as one building") {
   const TempFolder folder;
   const std::string mesh = folder.write("place.obj", obj_text(measured_place(row_and_two())));
