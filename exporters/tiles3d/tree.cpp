@@ -14,12 +14,12 @@ namespace colod {
 
 namespace {
 
-constexpr std::size_t kMostChildren = 16;    // REPLACE waits for all children of a tile
-constexpr std::size_t kMostInCell = 256;     // buildings
-constexpr double kWidestCell = 1000;         // metres: the Earth is flat to 2 cm about its middle
-constexpr double kStandInTriangles = 0.025;  // of the finest layers' triangles
-constexpr double kMostShare = 0.05;          // of them, where that gives each building its own
-constexpr std::size_t kMostStandIns = 64;    // in one tile
+constexpr std::size_t kMostChildren = 16;  // REPLACE waits for all children of a tile
+constexpr std::size_t kMostInCell = 256;   // buildings
+constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm about its middle
+constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
+constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
+constexpr std::size_t kMostStandIns = 64;  // in one tile
 constexpr double kNearer = 1.005;  // scope scene: a level may stand so much nearer than others' …
 constexpr double kWorthATile = 1.4;  // … scope building: so much nearer that it is worth a tile
 constexpr const char* kRoot = "root";
@@ -164,7 +164,7 @@ class Planner {
       return static_cast<std::size_t>(share * finest / kStandInTriangles);
     };
     const std::size_t own = std::min({group.size(), kMostChildren, boxes(kMostShare)});
-    return std::clamp<std::size_t>(boxes(kStandInTriangles), std::max<std::size_t>(own, 1),
+    return std::clamp<std::size_t>(boxes(kStandInShare), std::max<std::size_t>(own, 1),
                                    kMostStandIns);
   }
 
