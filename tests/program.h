@@ -9,6 +9,10 @@
 
 #include "temporary_folder.h"
 
+#ifndef COLOD_BINARY  // the build's own, which tests of the program are given
+#define COLOD_BINARY "colod"
+#endif
+
 namespace colod::test {
 
 /// How it ended (−1: by a signal), and what it said.
