@@ -23,14 +23,14 @@ constexpr double kMostDrop = 3.5;     // m of ground along a house
 /// Highest at the house's highest corner, where it is level with the floor of an ordinary house.
 void lay_ground(House& house, bool has_sloping_ground) {
   if (!has_sloping_ground || house.random.chance(0.2)) return;
-  constexpr double kAround = 6;  // m that blocks reach beyond the plan
-  const double length = house.width + house.depth + 4 * kAround;
+  constexpr double kApart = 6;  // m that blocks reach beyond the plan
+  const double length = house.width + house.depth + 4 * kApart;
   const double steep = std::min(house.random.uniform(0.02, kMostGround), kMostDrop / length);
   const double angle = house.random.uniform(0, 2 * M_PI);
   house.ground.slope = steep * Vec2(std::cos(angle), std::sin(angle));
   double highest = 0;
-  for (double x : {-kAround, house.width + kAround})
-    for (double y : {-kAround, house.depth + kAround})
+  for (double x : {-kApart, house.width + kApart})
+    for (double y : {-kApart, house.depth + kApart})
       highest = std::max(highest, house.ground.at({x, y}));
   house.ground.height = -highest;
 }

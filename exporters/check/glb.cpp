@@ -282,7 +282,8 @@ double gsd_of(const Json& node) { return node.value("extras", Json::object()).va
 /// Coverages fall strictly from at most 1 to 0, and are D / (g·H) where the file says H.
 void check_coverage(Glb& glb, const std::string& place, const Json& node,
                     const std::vector<double>& gsds, double diameter) {
-  constexpr double kSlack = 0.02;  // relative: D is of rounded positions, coverages are kept apart
+  constexpr double kRounding =
+      0.02;  // relative: D is of rounded positions, coverages are kept apart
   const Json coverage =
       node.value("extras", Json::object()).value("MSFT_screencoverage", Json::array());
   bool falls = coverage.size() == gsds.size();
@@ -295,7 +296,7 @@ void check_coverage(Glb& glb, const std::string& place, const Json& node,
   const double height = glb.json.value("/asset/extras/switching/viewportHeight"_json_pointer, 0.0);
   for (std::size_t i = 0; height > 0 && i + 1 < gsds.size(); ++i) {
     const double told = coverage[i], measured = std::min(1.0, diameter / (gsds[i + 1] * height));
-    if (std::abs(told - measured) > kSlack * measured)
+    if (std::abs(told - measured) > kRounding * measured)
       glb.report("lod-coverage", place, "a coverage is not what the next level's gsd makes it");
   }
 }
