@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "exporters/files.h"
 #include "job/job.h"
+#include "pipeline/switches.h"
 #include "plan/cell_lock.h"
 #include "publish/cells.h"
 #include "publish/kept_switching.h"

@@ -19,6 +19,7 @@
 #include "job/scene_input.h"
 #include "numbers.h"
 #include "output.h"
+#include "pipeline/switches.h"
 #include "pipeline_options.h"
 #include "plan/cell_lock.h"
 #include "plan_options.h"

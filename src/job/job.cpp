@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "judge.h"
+#include "pipeline/switches.h"
 #include "publish/report_pictures.h"
 #include "rules/rules.h"
 #include "scene_input.h"

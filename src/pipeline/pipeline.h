@@ -56,7 +56,7 @@ struct Layer {
   Looks looks;          ///< places are in the frame of the mesh
   LayerSight sight;     ///< against the finest layer, for switching
   double own_gsd = 0;  ///< metres a pixel: where the layer may stand by this building's measure …
-  double gsd = 0;      ///< … and where it does (set by decide_switches)
+  double gsd = 0;      ///< … and where it does (set by switches.h)
   std::size_t bytes = 0;  ///< of its mesh as the building's GLB packs it; 0: none written
   std::optional<LayerTexture> texture;  ///< none: none was made
   std::string failure;                  ///< why there is no mesh; empty: there is one
@@ -226,28 +226,17 @@ struct Hooks {
   void check() const;
 };
 
-/// `planes` to `coanalysis` for one building. Failures are recorded in the building, nothing is
+/// Planes, segments and descriptors of one building. Failures are recorded in it, nothing is
 /// thrown.
 Building segment_building(Turn turn, const Options& options);
 
-/// `coanalysis` and `coanalysis` over all buildings: sets layer_of_segment. With a prior each
+/// `coanalysis` over all buildings: selection and layers, sets layer_of_segment. With a prior each
 /// building for itself, by what the prior's scene learnt. Throws Error{kUsage} when its number of
 /// layers is another.
 void analyze_scene(Scene& scene, const Options& options, const Prior* prior = nullptr);
 
 /// `partition` and `extraction` and the measures for one building. Throws Cancelled only.
 void mesh_building(Building& building, const Options& options, const Hooks& hooks = {});
-
-/// After the last building: sets own_gsd and gsd of all layers, and the scene's switching. With a
-/// prior that has sights, its buildings decide the scene's g. Layers are numbered below `layers`.
-void decide_switches(Scene& scene, int layers, const SwitchOptions& options,
-                     const std::vector<BuildingSights>& prior = {});
-/// The same in two steps, for buildings that are not all in memory: what the scene's buildings
-/// bring decides, in any order, and then for each building.
-Switching plan_switches(const std::vector<BuildingSights>& own, int layers,
-                        const SwitchOptions& options,
-                        const std::vector<BuildingSights>& prior = {});
-void apply_switches(const Switching& switching, Building& building);
 
 /// Holds the layers of a building against a ground truth; `source` is its own in its local frame,
 /// with object numbers. Empty where the truth does not name it or a layer failed. Throws

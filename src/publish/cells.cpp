@@ -10,6 +10,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "pipeline/switches.h"
 #include "publish.h"
 
 namespace colod {

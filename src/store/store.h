@@ -50,7 +50,7 @@ class Store {
   /// The key that the building was put with; empty: not there.
   std::string segments_key(const std::string& name) const;
 
-  /// `coanalysis` and `coanalysis`: layer_of_segment of a building; its meshes, which they outdate,
+  /// `coanalysis`: layer_of_segment of a building; its meshes, which they outdate,
   /// go away when a layer changed.
   void put_layers_of_segments(const Building& building);
   bool has_layers_of_segments(const std::string& name) const;

@@ -6,7 +6,7 @@
 #include "exporters/tiles3d/tiles3d.h"
 #include "exporters_helpers.h"
 #include "measure/picture_difference.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/switches.h"
 #include "publish/publish.h"
 
 using namespace colod;

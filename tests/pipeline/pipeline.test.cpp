@@ -12,6 +12,7 @@
 #include "exporters/gltf/glb.h"
 #include "exporters/tiles3d/tiles3d.h"
 #include "meshes.h"
+#include "pipeline/switches.h"
 #include "publish/publish.h"
 #include "publish/report.h"
 #include "shared_data.h"

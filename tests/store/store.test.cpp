@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "meshes.h"
+#include "pipeline/switches.h"
 #include "publish/report.h"
 #include "store/shelf.h"
 #include "temporary_folder.h"
