@@ -50,7 +50,7 @@ std::vector<Side> long_sides(const std::vector<Vec2>& hull, double in_plane) {
   std::vector<Side> sides;
   for (const auto& [a, b] : lines) {
     Side side{a, (b - a).normalized(), in_plane};
-    const auto is_it = [&](const Side& s) { return s.has(a) && s.has(b); };
+    const auto is_it = [a = a, b = b](const Side& s) { return s.has(a) && s.has(b); };
     if (std::any_of(sides.begin(), sides.end(), is_it)) continue;
     std::array<double, 2> own = {0, 0}, whole = {0, 0};
     for (const Vec2& p : hull) {
