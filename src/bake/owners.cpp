@@ -10,6 +10,34 @@ namespace colod::bake {
 
 using namespace parameters::bake;
 
+namespace {
+
+/// Through a side of a triangle; its normal is a unit one and points inward.
+struct Line {
+  Vec2 normal;
+  double offset;
+};
+
+std::array<Line, 3> lines(const Corners& c) {
+  std::array<Line, 3> out;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2 along = c.at[(k + 1) % 3] - c.at[k];
+    const double length = along.norm();
+    const Vec2 normal = length > 0 ? Vec2(-along.y() / length, along.x() / length) : Vec2(0, 0);
+    out[k] = {normal, normal.dot(c.at[k])};
+  }
+  return out;
+}
+
+/// Whether a place is at least so far out of a triangle, by one of its sides; most places are.
+bool is_beyond(const std::array<Line, 3>& sides, const Vec2& q, double distance) {
+  return std::any_of(sides.begin(), sides.end(), [&](const Line& side) {
+    return side.normal.dot(q) - side.offset < -distance;
+  });
+}
+
+}  // namespace
+
 bool Corners::holds(const Vec2& q) const {
   for (int k = 0; k < 3; ++k)
     if (cross(at[(k + 1) % 3] - at[k], q - at[k]) < 0) return false;
@@ -34,6 +62,7 @@ std::vector<Owner> owners(const Window& w, const std::vector<Corners>& triangles
   std::vector<Owner> out(static_cast<std::size_t>(w.width) * w.height);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& at = triangles[t].at;
+    const std::array<Line, 3> sides = lines(triangles[t]);
     const Vec2 least = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
     const Vec2 most = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
     const auto from = [](double v, int begin, int n) {
@@ -48,6 +77,7 @@ std::vector<Owner> owners(const Window& w, const std::vector<Corners>& triangles
         Owner& own = out[static_cast<std::size_t>(y) * w.width + x];
         if (own.distance <= 0) continue;
         const Vec2 middle(w.x + x + 0.5, w.y + y + 0.5);
+        if (is_beyond(sides, middle, own.distance)) continue;
         const double d = (triangles[t].nearest(middle) - middle).norm();
         if (d < own.distance) own = {static_cast<int>(t), d};
       }

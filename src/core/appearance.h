@@ -51,8 +51,31 @@ struct Appearance {
   void pick(std::span<const int> faces);
 };
 
+/// Both ways between a component of an sRGB colour and linear light, 0..1 (IEC 61966-2-1), for many
+/// texels.
+class SrgbTable {
+ public:
+  SrgbTable();
+  float to_linear(std::uint8_t srgb) const { return linear_[srgb]; }
+  std::uint8_t to_srgb(float linear) const {
+    if (!(linear > 0)) return 0;
+    if (!(linear < 1)) return 255;
+    std::size_t code = starts_[static_cast<std::size_t>(linear * kSteps)];
+    while (code < 255 && borders_[code + 1] <= linear) ++code;
+    return static_cast<std::uint8_t>(code);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 4096;
+  std::array<float, 256> linear_;
+  std::array<float, 256> borders_;  // from which linear value on a component is i, not i − 1
+  std::array<std::uint8_t, kSteps> starts_;  // of the linear value i / kSteps the component; those
+                                             // of greater ones are few steps on
+};
+extern const SrgbTable kSrgb;
+
 /// What one component of an sRGB colour is in linear light, 0..1, and back.
-float to_linear(std::uint8_t srgb);
-std::uint8_t to_srgb(float linear);
+inline float to_linear(std::uint8_t srgb) { return kSrgb.to_linear(srgb); }
+inline std::uint8_t to_srgb(float linear) { return kSrgb.to_srgb(linear); }
 
 }  // namespace colod

@@ -10,14 +10,14 @@ Box bounding_box(const std::vector<Vec3>& points) {
   return box;
 }
 
-Vec3 barycentric(const Mesh& m, const Face& f, const Vec3& p) {
+CornerWeights::CornerWeights(const Mesh& m, const Face& f) {
   const Vec3 normal = face_cross(m, f);
   const double square = normal.squaredNorm();
-  if (!(square > 0)) return Vec3::Constant(1.0 / 3);
+  if (!(square > 0)) return;
   const Vec3 &a = m.vertices[f[0]], &b = m.vertices[f[1]], &c = m.vertices[f[2]];
-  const double wb = (p - a).cross(c - a).dot(normal) / square;
-  const double wc = (b - a).cross(p - a).dot(normal) / square;
-  return {1 - wb - wc, wb, wc};
+  first_ = a;
+  rise_ = {(c - a).cross(normal) / square, normal.cross(b - a) / square};
+  is_flat_ = false;
 }
 
 double surface_area(const Mesh& m) {

@@ -129,9 +129,26 @@ inline Vec3 face_cross(const Mesh& m, const Face& f) {
   return (m.vertices[f[1]] - m.vertices[f[0]]).cross(m.vertices[f[2]] - m.vertices[f[0]]);
 }
 inline double face_area(const Mesh& m, const Face& f) { return 0.5 * face_cross(m, f).norm(); }
-/// Weights of the corners that give the point of a face's plane nearest to p; thirds where the face
-/// has no area.
-Vec3 barycentric(const Mesh& m, const Face& f, const Vec3& p);
+/// Of a face, the weights of its corners that give the point of its plane nearest to a point;
+/// thirds where the face has no area.
+class CornerWeights {
+ public:
+  CornerWeights() = default;
+  CornerWeights(const Mesh& m, const Face& f);
+  Vec3 at(const Vec3& p) const {
+    if (is_flat_) return Vec3::Constant(1.0 / 3);
+    const double b = (p - first_).dot(rise_[0]), c = (p - first_).dot(rise_[1]);
+    return {1 - b - c, b, c};
+  }
+
+ private:
+  Vec3 first_ = Vec3::Zero();
+  std::array<Vec3, 2> rise_ = {};  // how the second and third weight grow
+  bool is_flat_ = true;
+};
+inline Vec3 barycentric(const Mesh& m, const Face& f, const Vec3& p) {
+  return CornerWeights(m, f).at(p);
+}
 double surface_area(const Mesh& m);
 /// Signed volume enclosed by a closed mesh (positive when faces point outward); meaningless for an
 /// open one.

@@ -11,6 +11,7 @@ namespace colod {
 namespace {
 
 int wrapped(int i, int n, Wrap wrap) {
+  if (i >= 0 && i < n) return i;
   if (wrap == Wrap::kClamp) return std::clamp(i, 0, n - 1);
   const int period = wrap == Wrap::kMirror ? 2 * n : n;
   i %= period;
@@ -42,19 +43,20 @@ Shown bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
   const double y = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
   const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
+  const std::array px{wrapped(x0, raster.width, m.wrap_u), wrapped(x0 + 1, raster.width, m.wrap_u)};
+  const std::array py{wrapped(y0, raster.height, m.wrap_v),
+                      wrapped(y0 + 1, raster.height, m.wrap_v)};
   const bool is_cut = m.cutoff > 0 && !raster.alpha.empty();
   Light all = Light::Zero(), opaque = Light::Zero();
   float alpha = 0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const int px = wrapped(x0 + i, raster.width, m.wrap_u);
-      const int py = wrapped(y0 + j, raster.height, m.wrap_v);
-      const std::uint8_t* p = raster.at(px, py);
+      const std::uint8_t* p = raster.at(px[i], py[j]);
       const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
       const Light light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
       all += weight * light;
       if (!is_cut) continue;
-      const float own = raster.alpha_at(px, py);
+      const float own = raster.alpha_at(px[i], py[j]);
       opaque += weight * own * light, alpha += weight * own;
     }
   if (!is_cut) return {all, 1};
@@ -78,6 +80,14 @@ const Pyramid* Lens::look(const ImagePlace& place, int number) {
   std::swap(held_[0], held_[1]);
   if (held_[0].number != number) held_[0] = {number, cache_.get(place).pyramid};
   return held_[0].pyramid.get();
+}
+
+Vec3 Lens::weights(const Mesh& mesh, int face, const Vec3& point) {
+  if (mesh_ != &mesh || face_ != face) {
+    mesh_ = &mesh, face_ = face;
+    weights_ = CornerWeights(mesh, mesh.faces[static_cast<std::size_t>(face)]);
+  }
+  return weights_.at(point);
 }
 
 LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCache& cache)
@@ -162,14 +172,14 @@ bool LookSampler::is_hole(int face, const Vec3& point, Lens& lens) const {
   if (m.image < 0 || !(m.cutoff > 0)) return false;
   const Pyramid* pyramid = lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
   if (!pyramid || pyramid->levels[0].alpha.empty()) return false;
-  const Vec2 uv = place_of(f, barycentric(mesh_, mesh_.faces[f], point));
+  const Vec2 uv = place_of(f, lens.weights(mesh_, face, point));
   return is_place(uv.cast<float>()) && bilinear(pyramid->levels[0], uv, m).alpha < m.cutoff;
 }
 
 Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
   const auto f = static_cast<std::size_t>(face);
   Light light = Light::Ones();
-  const Vec3 weight = barycentric(mesh_, mesh_.faces[f], point);
+  const Vec3 weight = lens.weights(mesh_, face, point);
   if (!look_.colors.empty()) {
     light.setZero();
     for (int c = 0; c < 3; ++c) {

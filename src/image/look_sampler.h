@@ -21,6 +21,8 @@ class Lens {
   explicit Lens(const ImageCache& cache) : cache_(cache) {}
   /// Null: it cannot be read.
   const Pyramid* look(const ImagePlace& place, int number);
+  /// How much of each corner of a face a point of its plane is.
+  Vec3 weights(const Mesh& mesh, int face, const Vec3& point);
 
  private:
   struct Held {
@@ -29,6 +31,10 @@ class Lens {
   };
   const ImageCache& cache_;
   std::array<Held, 2> held_;
+  // Of the face that was asked for last, since the next texel mostly shows it, too.
+  const Mesh* mesh_ = nullptr;
+  int face_ = -1;
+  CornerWeights weights_;
 };
 
 /// A mesh with its look. Keeps references to all that it is given.
