@@ -318,7 +318,7 @@ const char* to_string(LookFault fault) {
 }
 
 LookVerdict judge_looks(const Looks& l) {
-  constexpr double kMostPoints = 10;  // of one fault, so that none hides the others
+  constexpr double kMostOfOne = 10;  // of one fault, so that none hides the others
   const std::array<double, kLookFaults> times = {l.flaps / kSeenFlap,
                                                  l.unsupported / kSeenUnsupported,
                                                  (1 - l.upright) / kSeenLeaning,
@@ -332,7 +332,7 @@ LookVerdict judge_looks(const Looks& l) {
     const bool is_seen = fault == LookFault::kTriangles ? times[i] > 1 : times[i] >= 1;
     if (!is_seen) continue;
     verdict.faults.push_back(fault);
-    verdict.points += std::min(kMostPoints, times[i]);
+    verdict.points += std::min(kMostOfOne, times[i]);
   }
   std::stable_sort(verdict.faults.begin(), verdict.faults.end(), [&](LookFault a, LookFault b) {
     return times[static_cast<int>(a)] > times[static_cast<int>(b)];
