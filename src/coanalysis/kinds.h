@@ -20,8 +20,9 @@ struct Kinds {
 Kinds find_kinds(const std::vector<Descriptor>& segments, int count, double eta,
                  std::uint64_t seed);
 
-/// Per segment 0..k−1, coarse to fine: kinds by falling median extent, parted into k runs in which
-/// their logarithms differ least (each kind counts once). Empty: fewer than k kinds.
+/// Per segment 0..k−1, coarse to fine: kinds by falling median extent, parted where its logarithm
+/// passes equal steps of the range of the segments' sizes, so that what each layer lacks is smaller
+/// than what the one before lacks by about one factor. Empty: fewer than k kinds.
 std::vector<int> classes_of_kinds(const std::vector<Descriptor>& segments,
                                   const std::vector<int>& kind, int k);
 

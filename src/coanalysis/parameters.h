@@ -9,6 +9,7 @@ namespace colod::parameters::coanalysis {
 constexpr double kPaperBound = 0.8, kRobustBound = 0.95;  // on f_r
 constexpr int kKindsALayer = 4;
 constexpr double kSameKind = 0.1;       // distance; samples of the same shape differ by up to 0.07
+constexpr double kSizeTail = 0.1;       // of the segments, at both ends of the range of sizes
 constexpr double kSmallPlanes = 0.03;   // of the area of layer 0's segments, together …
 constexpr double kSmallPlane = 0.01;    // … and each of them
 constexpr double kSpareShare = 0.005;   // of all planes' area: smaller ones never join layer 0 …
