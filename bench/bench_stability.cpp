@@ -1,6 +1,8 @@
-// How much of a scene's layers hangs on one building, or on the seed: the scene is analysed again without each of its buildings, and
-// with other seeds, and the segments of the others whose layer is another then are counted.
-//   bench_stability SCENE.colod... [--seeds 8] [--json]     SCENE.colod: of `colod segment`, analysed or not
+// How much of a scene's layers hangs on one building, or on the seed: the scene is analysed again
+// without each of its buildings, and with other seeds, and the segments of the others whose layer
+// is another then are counted.
+//   bench_stability SCENE.colod... [--seeds 8] [--json]     SCENE.colod: of `colod segment`,
+//   analysed or not
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -97,7 +99,9 @@ int main(int argc, char** argv) {
   try {
     for (const std::string& path : scenes) {
       const Moves moves = measure(path, seeds);
-      all.push_back({{"scene", path}, {"without_one", facts(moves.without_one)}, {"seeds", facts(moves.seeds)}});
+      all.push_back({{"scene", path},
+                     {"without_one", facts(moves.without_one)},
+                     {"seeds", facts(moves.seeds)}});
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "bench_stability: %s\n", e.what());
@@ -107,9 +111,15 @@ int main(int argc, char** argv) {
     std::printf("%s\n", all.dump(2).c_str());
     return 0;
   }
-  std::printf("| scene | without one building: moved in the mean | worst | with another seed: mean | worst |\n|---|---|---|---|---|\n");
-  const auto cell = [](const nlohmann::json& f, const char* key) { return f.is_null() ? 0 : 100 * f[key].get<double>(); };
+  std::printf(
+      "| scene | without one building: moved in the mean | worst | with another seed: mean | worst "
+      "|\n|---|---|---|---|---|\n");
+  const auto cell = [](const nlohmann::json& f, const char* key) {
+    return f.is_null() ? 0 : 100 * f[key].get<double>();
+  };
   for (const nlohmann::json& f : all)
-    std::printf("| %s | %.1f %% | %.1f %% | %.1f %% | %.1f %% |\n", f["scene"].get<std::string>().c_str(), cell(f["without_one"], "mean"),
-                cell(f["without_one"], "worst"), cell(f["seeds"], "mean"), cell(f["seeds"], "worst"));
+    std::printf("| %s | %.1f %% | %.1f %% | %.1f %% | %.1f %% |\n",
+                f["scene"].get<std::string>().c_str(), cell(f["without_one"], "mean"),
+                cell(f["without_one"], "worst"), cell(f["seeds"], "mean"),
+                cell(f["seeds"], "worst"));
 }

@@ -359,7 +359,7 @@ void check_levels(Glb& glb, const GlbContent& content) {
     return content.meshes.at(whole_number(of.at("mesh")));
   };
   const auto layer = [](const Json& of) {
-    return of.value("extras", Json::object()).value("layer", -1);
+    return of.value("extras", Json::object()).value("layer", -1.0);  // anything may stand there
   };
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Json lod = nodes[n].value("extensions", Json::object()).value("MSFT_lod", Json());

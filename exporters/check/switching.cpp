@@ -2,6 +2,7 @@
 // Differs: compares files with each other, which no validator does.
 #include "switching.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +14,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr double kSame = 1e-5;  // relative: tables hold floats
+constexpr double kMostLayers = 1e6;  // any number may stand in a file
+constexpr double kSame = 1e-5;       // relative: tables hold floats
 
 bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(a, b); }
 
@@ -24,7 +26,8 @@ void ScopeCheck::expect(const Json& switching) {
   is_scene_ = true;
   for (const Json& layer : switching.value("layers", Json::array()))
     if (const double gsd = layer.value("gsd", 0.0); gsd > 0)
-      said_[layer.value("layer", -1)].push_back({gsd, "asset.extras"});
+      said_[static_cast<int>(std::clamp(layer.value("layer", -1.0), -1.0, kMostLayers))].push_back(
+          {gsd, "asset.extras"});
 }
 
 void ScopeCheck::add(const std::vector<GlbContent::Row>& rows, const std::string& where) {

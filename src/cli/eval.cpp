@@ -90,14 +90,24 @@ Json read_report(const std::string& folder) {
   }
 }
 
-/// The layers of a building, coarsest first, in world coordinates.
-std::vector<Mesh> read_layers(const std::string& folder, const std::string& name, int layers) {
+/// Per layer, coarsest first, which of a GLB's levels shows it, 0 the finest: a layer that is like
+/// the finer one has its level.
+std::vector<int> levels_of(const Json& layers) {
+  std::vector<int> levels(layers.size(), 0);
+  for (std::size_t k = layers.size() - 1; k-- > 0;)
+    levels[k] = levels[k + 1] + (layers[k].value("like_finer", false) ? 0 : 1);
+  return levels;
+}
+
+/// The layers of a building, coarsest first, in world coordinates; `levels`: of its GLB.
+std::vector<Mesh> read_layers(const std::string& folder, const std::string& name,
+                              const std::vector<int>& levels) {
   const std::string stem = (std::filesystem::path(folder) / "buildings" / name).string();
   std::vector<Mesh> meshes;
-  for (int k = 0; k < layers; ++k) {
+  for (std::size_t k = 0; k < levels.size(); ++k) {
     const std::string text = stem + ".layer" + std::to_string(k);
     ReadOptions coarser;
-    coarser.coarser = layers - 1 - k;
+    coarser.coarser = levels[k];
     if (std::filesystem::exists(text + ".obj"))
       meshes.push_back(read_single(text + ".obj").mesh);
     else if (std::filesystem::exists(text + ".ply"))
@@ -141,7 +151,8 @@ int eval_truth(const EvalArguments& a) {
     const auto source = std::find_if(sources.begin(), sources.end(),
                                      [&](const Source& s) { return s.name == name; });
     const Source& shown = source != sources.end() ? *source : sources.at(0);
-    const auto placed = place_parts(shown, *named, read_layers(a.reference, name, own));
+    const auto placed =
+        place_parts(shown, *named, read_layers(a.reference, name, levels_of(b.at("layers"))));
     parts.insert(parts.end(), placed.begin(), placed.end());
   }
   Json json{{"truth", a.truth},

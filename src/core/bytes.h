@@ -23,6 +23,7 @@ void put_all(std::string& bytes, const std::vector<T>& values) {
 template <typename T>
 const char* take_all(const char* from, std::size_t count, std::vector<T>& values) {
   values.resize(count);
+  if (count == 0) return from;
   std::memcpy(static_cast<void*>(values.data()), from, count * sizeof(T));
   return from + count * sizeof(T);
 }

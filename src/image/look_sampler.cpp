@@ -200,9 +200,9 @@ Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& len
     const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
     return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));
   }
-  const double own = texel_of_face_[f] > 0 ? texel_of_face_[f] : spacing;
-  return light.cwiseProduct(
-      trilinear(*pyramid, uv, std::min(std::log2(spacing / own), std::log2(kMostTexels)), m));
+  const double own = texel_of_face_[f];
+  const double level = own > 0 && spacing > 0 ? std::log2(spacing / own) : 0;
+  return light.cwiseProduct(trilinear(*pyramid, uv, std::min(level, std::log2(kMostTexels)), m));
 }
 
 }  // namespace colod

@@ -29,9 +29,10 @@ struct HeightRaster {
   int size() const { return nx * ny; }
   bool is_covered(int c) const { return top[c] > -kInfinity; }
   int cell_of(const Vec3& p) const {
-    const int x = std::clamp(static_cast<int>((p.x() - origin.x()) / cell), 0, nx - 1);
-    const int y = std::clamp(static_cast<int>((p.y() - origin.y()) / cell), 0, ny - 1);
-    return y * nx + x;
+    const auto along = [](double cells, int n) {  // what is no number is in the first cell
+      return cells > 0 ? static_cast<int>(std::min<double>(cells, n - 1)) : 0;
+    };
+    return along((p.y() - origin.y()) / cell, ny) * nx + along((p.x() - origin.x()) / cell, nx);
   }
   /// Calls visit(neighbour) for the cells within `reach` cells, itself not.
   template <typename Visit>

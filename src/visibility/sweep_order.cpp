@@ -47,8 +47,9 @@ void Order::make(const std::vector<double>& x, const double* y, std::size_t rows
 }
 
 std::size_t Order::bin(double t) const {
-  return static_cast<std::size_t>(
-      std::clamp((t - low_) * scale_, 0.0, static_cast<double>(first_.size() - 2)));
+  const double at = (t - low_) * scale_;  // no number where all lies at one place: the first bin
+  const auto last = static_cast<double>(first_.size() - 2);
+  return at > 0 ? static_cast<std::size_t>(std::min(at, last)) : 0;
 }
 
 std::size_t Order::count_until(double t, bool is_closed) const {

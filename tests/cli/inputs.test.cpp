@@ -77,7 +77,8 @@ TEST_CASE("a stray triangle or vertex costs neither its building nor the others"
   INFO(r.err);
   CHECK(r.exit_code == 0);
   CHECK(fs::exists(f.out("tileset.json")));
-  for (const auto& b : f.report()["buildings"]) {
+  const auto report = f.report();
+  for (const auto& b : report["buildings"]) {
     CHECK(b["layers"].back()["volume"].get<double>() == Approx(720).epsilon(0.02));
     CHECK(b["left_out"].size() == (b["name"] == "good" ? 0 : 1));
   }

@@ -416,16 +416,19 @@ TEST_CASE("eval --truth reads the layers back from GLB as from OBJ, and agrees w
   Folder f;
   const std::string log = f / "log";
   REQUIRE(run({"synth", "-o", f / "synth", "--buildings", "2"}, log));
-  REQUIRE(run({"build", f / "synth", "-o", f / "out", "--ns", "24", "--nr", "24", "--quiet",
-               "--truth", f / "synth/truth.json"},
-              log));
-  const std::string out = f / "eval";
-  const std::string command = std::string(COLOD_BINARY) + " eval --truth " +
-                              (f / "synth/truth.json") + " " + (f / "out") + " >" + out;
-  REQUIRE(std::system(command.c_str()) == 0);
-  const std::string text = slurp(out), report = slurp(f.path() / "out" / "report.json");
-  CHECK(text.find("\"on_majority_layer\"") != std::string::npos);
-  CHECK(count_of(text, "buildings_agreeing") == count_of(report, "buildings_agreeing"));
+  for (const char* layers : {"3", "5"}) {  // of five some are alike and share a level
+    REQUIRE(run({"build", f / "synth", "-o", f / "out", "--ns", "24", "--nr", "24", "--quiet",
+                 "--truth", f / "synth/truth.json", "--layers", layers},
+                log));
+    const std::string out = f / "eval";
+    const std::string command = std::string(COLOD_BINARY) + " eval --truth " +
+                                (f / "synth/truth.json") + " " + (f / "out") + " >" + out;
+    REQUIRE(std::system(command.c_str()) == 0);
+    const std::string text = slurp(out), report = slurp(f.path() / "out" / "report.json");
+    CHECK(text.find("\"on_majority_layer\"") != std::string::npos);
+    CHECK(count_of(text, "buildings_agreeing") == count_of(report, "buildings_agreeing"));
+    if (std::string(layers) == "5") CHECK(count_of(report, "\"like_finer\": true") > 0);
+  }
   CHECK(!run({"eval", f / "out", "--truth", f / "out/report.json"}, log));
   CHECK(!run({"eval", f / "out"}, log));
 }

@@ -103,7 +103,8 @@ TEST_CASE("a textured house is textured in every output, and the report says fro
     textured_tiles += name.starts_with("tiles/") && bytes.find("image/jpeg") != bytes.npos;
   CHECK(textured_tiles >= 1);
   double coarser = 0;
-  for (const auto& layer : folder.report()["buildings"][0]["layers"]) {
+  const auto told = folder.report();
+  for (const auto& layer : told["buildings"][0]["layers"]) {
     const auto& texture = layer["texture"];
     CHECK(texture["seen"].get<double>() > 0.9);
     CHECK(texture["seen"].get<double>() + texture["nearest"].get<double>() +

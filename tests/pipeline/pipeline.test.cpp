@@ -123,8 +123,8 @@ TEST_CASE("an exact model of few planes gives nothing away on coarse layers") {
     if (i > 0 && j > 0)  // both fans about the first corner
       step.mesh.faces.push_back({0, j, i}), step.mesh.faces.push_back({n, i + n, j + n});
   }
-  for (const Layer& layer : build({step}).buildings[0].layers)
-    CHECK(layer.validity.polygons == n + 2);
+  const Scene scene = build({step});
+  for (const Layer& layer : scene.buildings[0].layers) CHECK(layer.validity.polygons == n + 2);
 }
 
 TEST_CASE("stacked boxes keep their ground floor, on every layer") {
@@ -135,7 +135,8 @@ TEST_CASE("stacked boxes keep their ground floor, on every layer") {
                      test::box_mesh({-over, -over, height}, {14 + over, 9 + over, height + 0.3}));
       m = test::join(m, test::box_mesh({5, 2, height + 0.3}, {9, 6, height + 2.6}));
       const double volume = 126 * height + 0.3 * (14 + 2 * over) * (9 + 2 * over) + 16 * 2.3;
-      for (const Layer& layer : build({test::as_source(m)}).buildings[0].layers)
+      const Scene scene = build({test::as_source(m)});
+      for (const Layer& layer : scene.buildings[0].layers)
         CHECK(layer.validity.volume == Approx(volume).epsilon(0.05));
     }
 }

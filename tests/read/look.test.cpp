@@ -216,7 +216,7 @@ TEST_CASE("a glTF has its base colour, turned coordinates and colours, whatever 
     j["meshes"] = {{{"primitives",
                      {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"material", 0}}}}}};
     j["nodes"] = {{{"mesh", 0}}};
-    j["images"] = {image};
+    j["images"] = Json::array({image});
     j["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
     j["textures"] = {{{"source", 0}, {"sampler", 0}}};
     j["materials"] = {
