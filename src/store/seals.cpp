@@ -143,9 +143,10 @@ void Store::drop_damaged(const Tell& tell) {
     });
   }
   for (const std::string& name : names()) {
-    const bool is_whole = impl_->are_sealed(                                    {Section::kSource, Section::kOutcome, Section::kPlanes,
-                                     Section::kSegments, Section::kCoverage, Section::kLayering},
-                                    name);
+    const bool is_whole =
+        impl_->are_sealed({Section::kSource, Section::kOutcome, Section::kPlanes,
+                           Section::kSegments, Section::kCoverage, Section::kLayering},
+                          name);
     if (is_whole) continue;
     tell(impl_->path + ": '" + name + "' is damaged: segmented, analysed and meshed anew");
     impl_->write("DELETE FROM building WHERE name = ?1").bind(name).run();

@@ -119,14 +119,14 @@ TEST_CASE("any value of a scene file that changed is noticed, and what is made o
       const auto before = content(path);
       rows(path, "UPDATE " + table + " SET " + column + " = CASE typeof(" + column +
                      ") WHEN 'integer' THEN " + column + " + 97 WHEN 'real' THEN " + column +
-                     " * 1.0000001 + 1e-9 WHEN 'text' THEN " + column + " || ' ' WHEN 'blob' THEN " +
-                     "CAST(substr(" + column + ", 1, length(" + column + ") / 2) || X'3F' || substr(" +
-                     column + ", length(" + column + ") / 2 + 2) AS BLOB) ELSE " + column + " END");
+                     " * 1.0000001 + 1e-9 WHEN 'text' THEN " + column +
+                     " || ' ' WHEN 'blob' THEN " + "CAST(substr(" + column + ", 1, length(" +
+                     column + ") / 2) || X'3F' || substr(" + column + ", length(" + column +
+                     ") / 2 + 2) AS BLOB) ELSE " + column + " END");
       if (content(path) == before) continue;  // nothing but NULL there
       ++changed;
       INFO(table << '.' << column);
-      CHECK_THROWS_WITH(read_all(path), Catch::Contains("damaged") &&
-                                            Catch::Contains("run colod"));
+      CHECK_THROWS_WITH(read_all(path), Catch::Contains("damaged") && Catch::Contains("run colod"));
       int told = 0;
       Store::open_or_renew(path, [&](const std::string& line) {
         ++told;
