@@ -110,6 +110,7 @@ int segment(const StageArguments& a) {
     problems.failures = found.inventory.failures;
     problems.warnings = found.inventory.warnings;
     Store store(a.scene, true);
+    store.drop_damaged(warns(log));
     segment_into(store, found.inventory, found.read, a.options, log, problems);
     if (!found.attributes.empty()) store.put_attributes(found.attributes);
   }
@@ -117,16 +118,18 @@ int segment(const StageArguments& a) {
   return exit_code(problems);
 }
 
-/// All buildings of several scene files without their geometry, so that memory does not follow the
-/// sources, by name, as one run would have them; `file_of[i]` tells where building i came from.
-Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of) {
+/// All buildings of several scene files, as much as `read` gives without its geometry, so that
+/// memory does not follow the sources, by name, as one run would have them; `file_of[i]` tells
+/// where building i came from.
+Scene read_scene(std::vector<Store>& stores, std::vector<std::size_t>& file_of,
+                 Building (Store::*read)(const std::string&) const) {
   std::vector<std::pair<std::string, std::size_t>> order;
   for (std::size_t f = 0; f < stores.size(); ++f)
     for (const std::string& name : stores[f].names()) order.emplace_back(name, f);
   std::sort(order.begin(), order.end());
   Scene scene;
   for (const auto& [name, f] : order) {
-    scene.buildings.push_back(stores[f].building(name));
+    scene.buildings.push_back((stores[f].*read)(name));
     drop_geometry(scene.buildings.back());
     file_of.push_back(f);
   }
@@ -212,7 +215,7 @@ int analyze(const StageArguments& a) {
   Analysed opened = open_analysed(a);
   std::vector<Store>& stores = opened.stores;
   std::vector<std::size_t> file_of;
-  Scene scene = read_scene(stores, file_of);
+  Scene scene = read_scene(stores, file_of, &Store::described);
   Options options = stores.front().options();
   if (a.gap >= 0) options.gap = a.gap;
   const std::optional<Prior> prior = read_prior(a.prior);
@@ -227,7 +230,7 @@ int update(const StageArguments& a) {
   limit_threads(a.run.threads);
   Analysed opened = open_analysed(a);
   std::vector<std::size_t> file_of;
-  Scene scene = read_scene(opened.stores, file_of);
+  Scene scene = read_scene(opened.stores, file_of, &Store::described);
   update_analysis(opened.files, opened.stores, std::move(scene), std::move(file_of), a.run.log());
   return 0;
 }
@@ -235,6 +238,7 @@ int update(const StageArguments& a) {
 /// One scene file's buildings; what went wrong is added to `problems`.
 void mesh_scene(Store& store, const Log& log, Scene& problems) {
   store.check_rules();
+  store.drop_damaged_meshes(warns(log));
   const Options options = store.options();
   store.get_coanalysis(problems);
   const std::vector<std::string> names = store.names();
@@ -325,7 +329,7 @@ int export_files(const StageArguments& a) {
   const Log log = a.run.log();
   std::vector<Store> stores = open_all(scene_files(a));
   std::vector<std::size_t> file_of;
-  Scene scene = read_scene(stores, file_of);
+  Scene scene = read_scene(stores, file_of, &Store::building);
   stores.front().get_coanalysis(scene);
   if (!a.plan.path.empty()) {
     Plan plan = read_plan(a.plan.path);

@@ -190,7 +190,7 @@ Selection select_layer0(const std::vector<SelectionBuilding>& buildings,
   const Solved solved = solve(model, options, result);
   for (int k = 0; k < model.size(); ++k)
     result.is_layer0[model.items[k].building][model.items[k].segment] = !solved.x[k];
-  result.objective = objective(model, solved.x);
+  result.objective = proven_objective(buildings, options.eta, model, solved.x);
   result.bound = solved.bound;
   result.is_exact = model.is_exact;
   result.gap = relative_gap(result.bound, result.objective);

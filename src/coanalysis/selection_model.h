@@ -76,6 +76,10 @@ double block_loss(const Block& block, const Choice& x);
 bool is_feasible(const Model& model, const Choice& x);
 /// E_0 (with the low weights, that is, never more than the true value); −infinity when infeasible.
 double objective(const Model& model, const Choice& x);
+/// The same, told better where items share prototypes: by what is known of all items of one
+/// together.
+double proven_objective(const std::vector<SelectionBuilding>& buildings, double eta,
+                        const Model& model, const Choice& x);
 
 /// What the other blocks gain when this one offers a set: Σ_q weights[q] max_{k∈set} sim(k, q).
 struct Offer {

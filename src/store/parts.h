@@ -6,13 +6,16 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "store.h"
 
 struct sqlite3;
@@ -29,6 +32,9 @@ constexpr bool kIsDoubles = std::is_same_v<T, Vec3> || std::is_same_v<T, std::ar
 class Statement {
  public:
   Statement(sqlite3* db, const std::string& path, Stage stage, const char* sql);
+  /// The same with the first value bound.
+  Statement(sqlite3* db, const std::string& path, Stage stage, const char* sql,
+            const std::string& first);
   ~Statement();
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
@@ -45,6 +51,8 @@ class Statement {
   }
   Statement& bind(const Vec3& v) { return bind_bytes(v.data(), sizeof(Vec3)); }
   Statement& bind_null();
+  /// From now on every row that is stepped to is added, each column with its type and length.
+  Statement& sum_into(Hash& hash);
 
   /// True when there is a row to read.
   bool step();
@@ -52,6 +60,7 @@ class Statement {
   void run();
 
   bool is_null() const;  ///< the next column
+  void skip(int columns) { read_ += columns; }
   std::string text();
   std::string bytes();
   double real();
@@ -77,6 +86,7 @@ class Statement {
  private:
   std::span<const std::byte> blob();  ///< until the next step
   void check(int code) const;
+  void sum_row() const;
   /// What follows takes finite numbers, no farther than a reader of meshes lets them be, for
   /// granted. Throws Error{kInput}.
   void check_numbers(std::span<const double> numbers) const;
@@ -85,6 +95,7 @@ class Statement {
   const std::string& path_;
   Stage stage_;
   sqlite3_stmt* statement_ = nullptr;
+  Hash* sum_ = nullptr;
   int bound_ = 0, read_ = 0;
 };
 
@@ -142,6 +153,18 @@ void remove_foreign(const std::string& path, const char* is_what,
   remove_database(path);
 }
 
+/// What of a building is written together, and has one seal. The order is that of the file format.
+enum class Section {
+  kSource,
+  kOutcome,
+  kPlanes,
+  kSegments,
+  kCoverage,
+  kLayering,  ///< which layer its segments lie on
+  kSights,    ///< of its meshes
+  kMeshes     ///< all of them, sights as well
+};
+
 struct Store::Impl : Database {
   bool has_row(const char* sql, const std::string& name) const;
   /// All tables, views and triggers as they were made.
@@ -152,15 +175,34 @@ struct Store::Impl : Database {
   /// Of this format, or empty.
   bool is_of_its_kind() const;
 
+  // seals.cpp: hashes by which a changed byte is seen. A temporary file has none.
+  bool has_seals() const { return !path.empty(); }
+  std::string sum_of(Section section, const std::string& name) const;
+  void seal(Section section, const std::string& name) const;
+  bool is_sealed(Section section, const std::string& name) const;
+  bool are_sealed(std::initializer_list<Section> sections, const std::string& name) const;
+  /// All rows of it. Throws Error{kInput}, with the stage that makes them anew, when they are not
+  /// what was written: nothing of them is taken for a number before.
+  Statement rows(Section section, const std::string& name) const;
+  void forget_meshes(const std::string& name) const;
+  void forget_layering() const;  ///< of all buildings, with their meshes
+  void put_meta(const std::string& key, const std::string& value) const;
+  bool has_whole_meta() const;
+  /// None: not there. Throws Error{kInput} when it is damaged.
+  std::optional<std::string> meta(const std::string& key) const;
+
   // rows.cpp
   void put_building(const Building& b, int order, const std::string& key) const;
   void put_planes(const Building& b) const;
   void put_segments(const Building& b) const;
   void put_layer(const Building& b, const Layer& layer) const;
   void put_outcome(const Building& b) const;  ///< what its meshing changed of the building itself
-  void get_building(Building& b) const;
+  void get_building(Building& b) const;       ///< the source with the outcome
+  void get_outcome(Building& b) const;
   void get_planes(Building& b) const;
-  void get_segments(Building& b) const;
+  void get_descriptors(Building& b) const;  ///< with layer_of_segment
+  void get_coverage(Building& b) const;     ///< after them
+  void get_segments(Building& b) const;     ///< after the planes: descriptors, coverage and planes
   void get_layers(Building& b) const;
 };
 
@@ -170,7 +212,7 @@ std::string look_json(const Appearance& look);
 /// The columns is_like_finer, deviation, profile.
 LayerSight read_sight(Statement& s);
 
-/// The columns form, volume, area, extent, is_flat, eigenvalues, d2.
+/// The columns form, volume, area, extent, is_flat, eigenvalues, context, d2.
 Descriptor read_descriptor(Statement& s);
 
 }  // namespace colod

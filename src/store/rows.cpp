@@ -316,15 +316,9 @@ void Store::Impl::put_outcome(const Building& b) const {
 }
 
 void Store::Impl::get_building(Building& b) const {
-  Statement s = read(
-      "SELECT path, origin_x, origin_y, origin_z, yaw, planes_distance, total_area, box, vertices, "
-      "faces, points, normals, plane_of_item, rays, failure, warnings, left_out, given_name, "
-      "solid, look, face_material, uvs, colors "
-      "FROM building "
-      "WHERE name = "
-      "?1");
-  if (!s.bind(b.source.name).step())
-    throw Error(Stage::kInput, path, "holds no building '" + b.source.name + "'");
+  Statement s = rows(Section::kSource, b.source.name);
+  if (!s.step()) throw Error(Stage::kInput, path, "holds no building '" + b.source.name + "'");
+  s.skip(3);  // name, position, key
   b.source.path = s.text();
   for (int i = 0; i < 3; ++i) b.frame.origin[i] = s.real();
   check_place({&b.frame.origin, 1}, path);
@@ -341,11 +335,7 @@ void Store::Impl::get_building(Building& b) const {
   b.source.cloud.normals = s.array<Vec3>();
   b.planes.plane_of_item = s.array<int>();
   b.segments.rays = static_cast<std::uint64_t>(s.integer());
-  b.failure = s.text();
-  read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
-  read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
   b.source.given_name = s.text();
-  b.solid = s.real();
   read_json(s.text(), path, "materials", [&](const Json& json) { read_look(json, b.source.look); });
   b.source.look.face_material = s.array<int>();
   b.source.look.uvs = s.array<std::array<Vec2f, 3>>();
@@ -359,17 +349,24 @@ void Store::Impl::get_building(Building& b) const {
   if (!b.source.cloud.normals.empty() &&
       b.source.cloud.normals.size() != b.source.cloud.points.size())
     throw Error(Stage::kInput, path, "damaged: a cloud has lost normals");
+  get_outcome(b);
+}
+
+void Store::Impl::get_outcome(Building& b) const {
+  Statement s = rows(Section::kOutcome, b.source.name);
+  if (!s.step()) return;
+  b.failure = s.text();
+  read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
+  read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
+  b.solid = s.real();
 }
 
 void Store::Impl::get_planes(Building& b) const {
-  Statement s = read(
-      "SELECT segment, normal_x, normal_y, normal_z, plane_offset, area, centroid, items, "
-      "outline_vertices, outline_rings, outline_triangles FROM plane WHERE building = ?1 ORDER BY "
-      "id");
-  s.bind(b.source.name);
+  Statement s = rows(Section::kPlanes, b.source.name);
   const std::size_t items =
       b.source.is_mesh() ? b.source.mesh.faces.size() : b.source.cloud.points.size();
   while (s.step()) {
+    s.skip(1);  // id
     const bool is_free = s.is_null();
     const auto segment = static_cast<int>(s.integer());
     b.segments.segment_of_plane.push_back(is_free ? -1 : segment);
@@ -389,13 +386,10 @@ void Store::Impl::get_planes(Building& b) const {
   }
 }
 
-void Store::Impl::get_segments(Building& b) const {
-  Statement s = read(
-      "SELECT is_alcove, voxels, form, volume, area, extent, is_flat, eigenvalues, context, d2, "
-      "layer"
-      " FROM segment WHERE building = ?1 ORDER BY id");
-  s.bind(b.source.name);
+void Store::Impl::get_descriptors(Building& b) const {
+  Statement s = rows(Section::kSegments, b.source.name);
   while (s.step()) {
+    s.skip(1);  // id
     Segment g;
     g.is_alcove = s.integer() != 0;
     g.voxels = s.integer();
@@ -403,36 +397,41 @@ void Store::Impl::get_segments(Building& b) const {
     g.kind = d.kind;
     g.volume = d.volume;
     g.area = d.area;
-    if (!s.is_null()) b.layer_of_segment.push_back(static_cast<int>(s.integer()));
     b.segments.segments.push_back(std::move(g));
     b.descriptors.push_back(d);
   }
+  Statement layers = rows(Section::kLayering, b.source.name);
+  while (layers.step()) {
+    layers.skip(1);  // id
+    b.layer_of_segment.push_back(static_cast<int>(layers.integer()));
+  }
+}
+
+void Store::Impl::get_coverage(Building& b) const {
+  Statement s = rows(Section::kCoverage, b.source.name);
+  while (s.step()) {
+    s.skip(1);  // id
+    Coverage coverage;
+    coverage.segments = s.array<int>();
+    check_range(coverage.segments, b.segments.segments.size(), path);
+    coverage.share = s.real();
+    b.segments.coverage.push_back(std::move(coverage));
+  }
+}
+
+void Store::Impl::get_segments(Building& b) const {
+  get_descriptors(b);
+  get_coverage(b);
   for (std::size_t p = 0; p < b.segments.segment_of_plane.size(); ++p) {
     const int segment = b.segments.segment_of_plane[p];
     if (segment >= static_cast<int>(b.segments.segments.size()))
       throw Error(Stage::kInput, path, "damaged: a plane names a segment that is not there");
     if (segment >= 0) b.segments.segments[segment].planes.push_back(static_cast<int>(p));
   }
-  Statement c = read("SELECT segments, share FROM coverage WHERE building = ?1 ORDER BY id");
-  c.bind(b.source.name);
-  while (c.step()) {
-    Coverage coverage;
-    coverage.segments = c.array<int>();
-    check_range(coverage.segments, b.segments.segments.size(), path);
-    coverage.share = c.real();
-    b.segments.coverage.push_back(std::move(coverage));
-  }
 }
 
 void Store::Impl::get_layers(Building& b) const {
-  Statement s = read(
-      "SELECT layer, segments, is_like_finer, deviation, profile, failure, validity, distances, "
-      "vertices, facets, "
-      "rings, triangles, facet_of_triangle, stand_in, invented, looks FROM layer WHERE building = "
-      "?1 "
-      "ORDER BY "
-      "layer");
-  s.bind(b.source.name);
+  Statement s = rows(Section::kMeshes, b.source.name);
   while (s.step()) {
     Layer layer;
     layer.layer = static_cast<int>(s.integer());

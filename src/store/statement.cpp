@@ -16,6 +16,12 @@ Statement::Statement(sqlite3* db, const std::string& path, Stage stage, const ch
   check(sqlite3_prepare_v2(db, sql, -1, &statement_, nullptr));
 }
 
+Statement::Statement(sqlite3* db, const std::string& path, Stage stage, const char* sql,
+                     const std::string& first)
+    : Statement(db, path, stage, sql) {
+  bind(first);
+}
+
 Statement::~Statement() { sqlite3_finalize(statement_); }
 
 Statement& Statement::bind(const std::string& v) {
@@ -44,11 +50,37 @@ Statement& Statement::bind_null() {
   return *this;
 }
 
+Statement& Statement::sum_into(Hash& hash) {
+  sum_ = &hash;
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(statement_);
   read_ = 0;
   if (code != SQLITE_ROW && code != SQLITE_DONE) check(code);
+  if (sum_ && code == SQLITE_ROW) sum_row();
   return code == SQLITE_ROW;
+}
+
+/// Types first: reading a number as bytes would make it a text.
+void Statement::sum_row() const {
+  for (int i = 0; i < sqlite3_column_count(statement_); ++i) {
+    const int type = sqlite3_column_type(statement_, i);
+    sum_->add(&type, sizeof type);
+    if (type == SQLITE_INTEGER) {
+      const std::int64_t value = sqlite3_column_int64(statement_, i);
+      sum_->add(&value, sizeof value);
+    } else if (type == SQLITE_FLOAT) {
+      const double value = sqlite3_column_double(statement_, i);
+      sum_->add(&value, sizeof value);
+    } else if (type != SQLITE_NULL) {
+      const void* data = sqlite3_column_blob(statement_, i);
+      const int size = sqlite3_column_bytes(statement_, i);
+      sum_->add(&size, sizeof size);
+      sum_->add(data, static_cast<std::size_t>(size));
+    }
+  }
 }
 
 void Statement::run() {

@@ -22,10 +22,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 9;  // PRAGMA user_version
+constexpr int kFormat = 10;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
-CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL, seal TEXT NOT NULL);
 CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT NOT NULL, path TEXT NOT NULL,
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
@@ -43,6 +43,8 @@ CREATE TABLE coverage(building TEXT NOT NULL REFERENCES building(name) ON DELETE
 CREATE TABLE layer(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, layer INTEGER NOT NULL,
   segments INTEGER, is_like_finer INTEGER, deviation REAL, profile BLOB, failure TEXT NOT NULL, validity TEXT NOT NULL, distances TEXT NOT NULL, vertices BLOB,
   facets BLOB, rings BLOB, triangles BLOB, facet_of_triangle BLOB, stand_in INTEGER, invented REAL, looks TEXT NOT NULL, PRIMARY KEY(building, layer)) WITHOUT ROWID;
+CREATE TABLE seal(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, section INTEGER NOT NULL,
+  hash TEXT NOT NULL, PRIMARY KEY(building, section)) WITHOUT ROWID;
 )sql";
 
 }  // namespace
@@ -104,10 +106,11 @@ Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_uni
   });
 }
 
-Store Store::open_or_renew(const std::string& path,
-                           const std::function<void(const std::string&)>& tell) {
+Store Store::open_or_renew(const std::string& path, const Tell& tell) {
   remove_foreign<Impl>(path, "damaged, or no scene file of this colod", tell);
-  return {path, true};
+  Store store(path, true);
+  store.drop_damaged(tell);
+  return store;
 }
 
 Store::~Store() = default;
@@ -115,27 +118,23 @@ Store::Store(Store&&) noexcept = default;
 
 void Store::put_options(const Options& options) {
   const std::string text = options_text(options);
-  Statement old = impl_->read("SELECT value FROM meta WHERE key = 'options'");
-  const bool is_there = old.step(), has_same_rules = impl_->has_these_rules();
-  if (is_there && old.text() == text && has_same_rules) return;
+  const std::optional<std::string> old = impl_->meta("options");
+  const bool has_same_rules = impl_->has_these_rules();
+  if (old == text && has_same_rules) return;
   const auto outdates_meshes = [&] {
     if (!has_same_rules) return true;
     const Options before = this->options();
     return before.layers != options.layers || !(before.rules == options.rules);
   };
   impl_->transaction([&] {
-    if (is_there && outdates_meshes())
-      impl_->execute("DELETE FROM layer; UPDATE segment SET layer = NULL", Stage::kOutput);
+    if (old && outdates_meshes()) impl_->forget_layering();
     impl_->execute("DELETE FROM meta WHERE key = 'coanalysis'", Stage::kOutput);
-    impl_->write("INSERT OR REPLACE INTO meta VALUES('options', ?1)").bind(text).run();
-    impl_->write("INSERT OR REPLACE INTO meta VALUES('rules', ?1)").bind(rules_version()).run();
+    impl_->put_meta("options", text);
+    impl_->put_meta("rules", rules_version());
   });
 }
 
-bool Store::Impl::has_these_rules() const {
-  Statement s = read("SELECT value FROM meta WHERE key = 'rules'");
-  return s.step() && s.text() == rules_version();
-}
+bool Store::Impl::has_these_rules() const { return meta("rules") == rules_version(); }
 
 void Store::check_rules() const {
   if (!impl_->has_these_rules())
@@ -145,10 +144,10 @@ void Store::check_rules() const {
 }
 
 Options Store::options() const {
-  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'options'");
-  if (!s.step())
+  const std::optional<std::string> text = impl_->meta("options");
+  if (!text)
     throw Error(Stage::kInput, impl_->path, "holds no options: colod segment has not finished");
-  return options_of(s.text(), impl_->path);
+  return options_of(*text, impl_->path);
 }
 
 void Store::keep_only(const std::vector<std::string>& names) {
@@ -173,6 +172,9 @@ void Store::put_segments(const Building& b, int order, const std::string& key) {
     impl_->put_building(b, order, key);
     impl_->put_planes(b);
     impl_->put_segments(b);
+    for (const Section section : {Section::kSource, Section::kOutcome, Section::kPlanes,
+                                  Section::kSegments, Section::kCoverage})
+      impl_->seal(section, b.source.name);
   });
 }
 
@@ -183,7 +185,7 @@ std::string Store::segments_key(const std::string& name) const {
 
 void Store::put_layers_of_segments(const Building& b) {
   impl_->transaction([&] {
-    bool is_changed = false;
+    bool is_changed = !impl_->is_sealed(Section::kLayering, b.source.name);
     Statement old = impl_->read("SELECT id, layer FROM segment WHERE building = ?1 ORDER BY id");
     old.bind(b.source.name);
     while (old.step()) {
@@ -192,10 +194,11 @@ void Store::put_layers_of_segments(const Building& b) {
                    old.integer() != b.layer_of_segment[id];
     }
     if (!is_changed) return;
-    impl_->write("DELETE FROM layer WHERE building = ?1").bind(b.source.name).run();
+    impl_->forget_meshes(b.source.name);
     Statement s = impl_->write("UPDATE segment SET layer = ?1 WHERE building = ?2 AND id = ?3");
     for (std::size_t i = 0; i < b.layer_of_segment.size(); ++i)
       s.bind(b.layer_of_segment[i]).bind(b.source.name).bind(static_cast<int>(i)).run();
+    impl_->seal(Section::kLayering, b.source.name);
   });
 }
 
@@ -205,9 +208,11 @@ bool Store::has_layers_of_segments(const std::string& name) const {
 
 void Store::put_meshes(const Building& b) {
   impl_->transaction([&] {
-    impl_->write("DELETE FROM layer WHERE building = ?1").bind(b.source.name).run();
+    impl_->forget_meshes(b.source.name);
     for (const Layer& layer : b.layers) impl_->put_layer(b, layer);
     impl_->put_outcome(b);
+    for (const Section section : {Section::kOutcome, Section::kSights, Section::kMeshes})
+      impl_->seal(section, b.source.name);
   });
 }
 
@@ -245,18 +250,28 @@ Building Store::building(const std::string& name) const {
   return b;
 }
 
+Building Store::described(const std::string& name) const {
+  Building b;
+  b.source.name = name;
+  impl_->get_descriptors(b);
+  impl_->get_coverage(b);
+  b.segments.segments = {};
+  return b;
+}
+
 std::vector<BuildingSights> Store::sights() const {
   std::vector<BuildingSights> result;
-  Statement s = impl_->read(
-      "SELECT building, layer, is_like_finer, deviation, profile FROM layer WHERE failure = '' "
-      "ORDER BY building, layer");
-  std::string last;
-  while (s.step()) {
-    const std::string name = s.text();
-    if (result.empty() || name != last) result.emplace_back();
-    last = name;
-    result.back().layers.push_back(static_cast<int>(s.integer()));
-    result.back().sights.push_back(read_sight(s));
+  Statement meshed = impl_->read("SELECT DISTINCT building FROM layer ORDER BY building");
+  while (meshed.step()) {
+    BuildingSights own;
+    Statement s = impl_->rows(Section::kSights, meshed.text());
+    while (s.step()) {
+      const auto layer = static_cast<int>(s.integer());
+      if (!s.text().empty()) continue;  // failed
+      own.layers.push_back(layer);
+      own.sights.push_back(read_sight(s));
+    }
+    if (!own.layers.empty()) result.push_back(std::move(own));
   }
   return result;
 }
@@ -264,23 +279,17 @@ std::vector<BuildingSights> Store::sights() const {
 Prior Store::prior() const {
   Prior prior;
   prior.layers = options().layers;
-  Statement s = impl_->read(
-      "SELECT b.name, s.layer, s.form, s.volume, s.area, s.extent, s.is_flat, s.eigenvalues, "
-      "s.context, s.d2 FROM segment s JOIN building b ON b.name = s.building ORDER BY b.position, "
-      "b.name, s.id");
-  std::string last;
-  while (s.step()) {
-    const std::string name = s.text();
-    if (prior.buildings.empty() || name != last) prior.buildings.emplace_back();
-    last = name;
-    if (s.is_null())
+  for (const std::string& name : names()) {
+    Building b;
+    b.source.name = name;
+    impl_->get_descriptors(b);
+    if (b.layer_of_segment.size() != b.descriptors.size())
       throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
-    const auto layer = static_cast<int>(s.integer());
-    const Descriptor d = read_descriptor(s);
-    if (layer < 0 || layer >= prior.layers)
-      throw Error(Stage::kInput, impl_->path, "damaged: a segment lies on no layer");
-    prior.buildings.back().segments.push_back(d);
-    prior.buildings.back().layer.push_back(layer);
+    for (const int layer : b.layer_of_segment)
+      if (layer < 0 || layer >= prior.layers)
+        throw Error(Stage::kInput, impl_->path, "damaged: a segment lies on no layer");
+    if (!b.descriptors.empty())
+      prior.buildings.push_back({std::move(b.descriptors), std::move(b.layer_of_segment)});
   }
   if (prior.buildings.empty())
     throw Error(Stage::kInput, impl_->path, "holds no segment to learn from");
@@ -307,7 +316,7 @@ void Store::put_coanalysis(const Scene& scene) {
                   {"prior", scene.has_prior},
                   {"warnings", warnings}};
   impl_->transaction([&] {
-    impl_->write("INSERT OR REPLACE INTO meta VALUES('coanalysis', ?1)").bind(json.dump()).run();
+    impl_->put_meta("coanalysis", json.dump());
     impl_->execute("DELETE FROM meta WHERE key = 'placed_later'", Stage::kOutput);
   });
 }
@@ -317,15 +326,13 @@ bool Store::is_analysed() const {
 }
 
 void Store::put_placed_later(const std::set<std::string>& names) {
-  impl_->write("INSERT OR REPLACE INTO meta VALUES('placed_later', ?1)")
-      .bind(Json(names).dump(-1, ' ', false, Json::error_handler_t::replace))
-      .run();
+  impl_->put_meta("placed_later", Json(names).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void Store::get_placed_later(Scene& scene) const {
-  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'placed_later'");
-  if (!s.step()) return;
-  read_json(s.text(), impl_->path, "buildings placed later",
+  const std::optional<std::string> text = impl_->meta("placed_later");
+  if (!text) return;
+  read_json(*text, impl_->path, "buildings placed later",
             [&](const Json& json) { scene.placed_later.merge(json.get<std::set<std::string>>()); });
 }
 
@@ -333,15 +340,13 @@ void Store::put_attributes(const std::map<std::string, Attributes>& attributes) 
   Json json = Json::object();
   for (const auto& [building, own] : attributes)
     for (const auto& [name, value] : own) json[building].push_back({name, value});
-  impl_->write("INSERT OR REPLACE INTO meta VALUES('attributes', ?1)")
-      .bind(json.dump(-1, ' ', false, Json::error_handler_t::replace))
-      .run();
+  impl_->put_meta("attributes", json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void Store::get_attributes(std::map<std::string, Attributes>& attributes) const {
-  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'attributes'");
-  if (!s.step()) return;  // of no scene
-  read_json(s.text(), impl_->path, "attributes", [&](const Json& json) {
+  const std::optional<std::string> text = impl_->meta("attributes");
+  if (!text) return;  // of no scene
+  read_json(*text, impl_->path, "attributes", [&](const Json& json) {
     for (const auto& [building, own] : json.items())
       for (const Json& pair : own)
         attributes[building].emplace_back(pair.at(0).get<std::string>(),
@@ -350,10 +355,10 @@ void Store::get_attributes(std::map<std::string, Attributes>& attributes) const 
 }
 
 void Store::get_coanalysis(Scene& scene) const {
-  Statement s = impl_->read("SELECT value FROM meta WHERE key = 'coanalysis'");
-  if (!s.step())
+  const std::optional<std::string> text = impl_->meta("coanalysis");
+  if (!text)
     throw Error(Stage::kInput, impl_->path, "is not analysed yet: run colod analyze first");
-  read_json(s.text(), impl_->path, "figures of the analysis", [&](const Json& json) {
+  read_json(*text, impl_->path, "figures of the analysis", [&](const Json& json) {
     scene.selection.objective = json.value("objective", 0.0);
     scene.selection.bound = json.value("bound", 0.0);
     scene.selection.gap = json.value("gap", 0.0);

@@ -18,17 +18,25 @@
 namespace colod {
 
 /// Not thread-safe. Every function throws Error{kInput} (reading) or Error{kOutput} (writing)
-/// naming the file.
+/// naming the file. What is read is compared with hashes that were written with it; a byte that
+/// changed meanwhile is an Error{kInput} with the stage that makes it anew.
 class Store {
  public:
+  /// Gets a line for the user.
+  using Tell = std::function<void(const std::string& line)>;
+
   /// Opens a scene file; `is_new_allowed` makes it when there is none.
   Store(const std::string& path, bool is_new_allowed);
   ~Store();
   Store(Store&&) noexcept;
   /// Opens or makes a file that a run can make again: one that is damaged, or no scene file of this
   /// colod, is deleted, `tell` gets a line that says so, and a new one is begun. Reads all of it.
-  static Store open_or_renew(const std::string& path,
-                             const std::function<void(const std::string& line)>& tell);
+  static Store open_or_renew(const std::string& path, const Tell& tell);
+
+  /// Lets go what does not have the bytes that were written, with all that was made of it, and
+  /// tells so: a building, or its meshes, or what is said of the scene. Reads all of it.
+  void drop_damaged(const Tell& tell);
+  void drop_damaged_meshes(const Tell& tell);
 
   /// Other options outdate the analysis, another number of layers, other rules or a colod with
   /// other ones the meshes too: they go away.
@@ -67,6 +75,9 @@ class Store {
 
   /// All that is there of a building; timings are not kept.
   Building building(const std::string& name) const;
+  /// Of a building what an analysis asks for, name, descriptors, coverage and, where they are
+  /// decided, layers; the rest is not read.
+  Building described(const std::string& name) const;
 
   /// What the buildings with meshes bring to the decision when layers switch.
   std::vector<BuildingSights> sights() const;

@@ -200,6 +200,36 @@ TEST_CASE("a damaged plan and a damaged scene file are named and made anew") {
   }
 }
 
+TEST_CASE("a changed number of a scene file is named and made anew") {
+  Work work;
+  const std::string scene = cell_scene(work.plan(), 1);
+  const struct {
+    const char* before;  ///< a text that a number lies beside
+    std::ptrdiff_t offset;
+    const char* made;
+  } places[] = {{"{\"images\":", -30, "segmented, analysed and meshed anew"},
+                {"{\"images\":", 6, "segmented, analysed and meshed anew"},
+                {"\"rms_a_to_b\"", 14, "are damaged: made anew"},
+                {"\"objective\"", 13, "analysed and meshed anew"}};
+  for (const auto& place : places) {
+    INFO(place.before << ' ' << place.offset);
+    const std::size_t found = slurp(scene).rfind(place.before);
+    REQUIRE(found != std::string::npos);
+    change(scene, found + static_cast<std::size_t>(place.offset));
+    const bool is_of_meshes = std::string(place.made).starts_with("are");
+    CHECK(work.stage_of("mesh") == is_of_meshes);
+    CHECK(work.has_said("cell-0001.colod: "));
+    CHECK(work.has_said("damaged"));
+    if (!is_of_meshes) {
+      CHECK(work.stage_of("segment"));
+      CHECK(work.has_said(place.made));
+      for (const char* stage : {"analyze", "mesh"}) CHECK(work.stage_of(stage));
+    }
+    CHECK(work.finish());
+    work.check_same();
+  }
+}
+
 TEST_CASE("a shelf knows any byte of its pieces that changed") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "shelf").string();

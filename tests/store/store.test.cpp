@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "meshes.h"
 #include "pipeline/switches.h"
 #include "publish/report.h"
@@ -123,8 +124,12 @@ TEST_CASE("other rules, and a colod with other ones, throw the meshes away") {
   }
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open(file.path.c_str(), &db) == SQLITE_OK);
-  sqlite3_exec(db, "UPDATE meta SET value = 'an older colod' WHERE key = 'rules'", nullptr, nullptr,
-               nullptr);
+  const std::string older = "an older colod", seal = hash_of(std::string("rules") + '\0' + older);
+  sqlite3_exec(
+      db,
+      ("UPDATE meta SET value = '" + older + "', seal = '" + seal + "' WHERE key = 'rules'")
+          .c_str(),
+      nullptr, nullptr, nullptr);
   sqlite3_close(db);
   Store store(file.path, false);
   CHECK_THROWS_WITH(store.check_rules(), Catch::Contains("colod segment"));
