@@ -8,9 +8,9 @@
 // since exp is convex. Of the mean of dis = η ‖h_k − h_t‖₂ + B(k, t):
 // - the root is concave: Σ w ‖h_k − h_t‖ / W ≤ √(Σ w ‖h_k − h_t‖² / W) = √(‖m − h_t‖² + v), m being
 //   the mean histogram and v the variance about it;
-// - G is cut into bins of like eigenvalues. J(k, t) ≤ J(c, t) + r_k for a bin's centre c, r_k = J(k,
-//   c), and B = J / (2 − J) is convex and rises: the mean of B over a bin whose r_k have the mean r
-//   and the maximum R is at most B(J) + r/R (B(J + R) − B(J)), and at most 1.
+// - G is cut into bins of like eigenvalues. With r_k = J(k, c) for a bin's centre c, J(k, t) ≤
+//   J(c, t) + r_k, and B = J / (2 − J) is convex and rises: the mean of B over a bin whose r_k have
+//   the mean r and the maximum R is at most B(J) + r/R (B(J + R) − B(J)), and at most 1.
 // Items of block j itself are taken out of the sum by their own similarities to t. Elements of a
 // kind are groups of their own: their dis to t of that kind is 0.
 //
@@ -43,7 +43,7 @@ double difference_of(const Vec3& a, const Vec3& b) {
 /// Items of like eigenvalues.
 struct Bin {
   Vec3 centre = Vec3::Zero();
-  double share = 0;                 ///< of the group's weight
+  double share = 0;  ///< of the group's weight
   double mean_r = 0, largest_r = 0;
 
   /// Mean B to t, at most.
@@ -96,8 +96,8 @@ class Proof {
     std::map<std::pair<int, ElementKind>, int> numbers;
     for (int k = 0; k < model_.size(); ++k) {
       if (!x_[k] || !(weight(k) > 0)) continue;
-      const auto [at, is_new] = numbers.try_emplace(
-          {model_.items[k].prototype, descriptor(k).kind}, static_cast<int>(groups_.size()));
+      const auto [at, is_new] = numbers.try_emplace({model_.items[k].prototype, descriptor(k).kind},
+                                                    static_cast<int>(groups_.size()));
       if (is_new) groups_.emplace_back();
       group_of_[k] = at->second;
       groups_[at->second].items.push_back(k);
