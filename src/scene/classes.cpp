@@ -80,19 +80,25 @@ float part(float value, double from, double to) {
   return std::clamp(static_cast<float>((value - from) / (to - from)), 0.0f, 1.0f);
 }
 
+Flatness flatness_over(const HeightMap& map, double window) {
+  return measure_flatness(map, static_cast<int>(std::lround(window / map.cell / 2)));
+}
+
 /// Where something stands: 0 like a roof … 1 like a tree; NaN where nothing does.
-std::vector<float> plantness(const HeightMap& map, const std::vector<float>& ground) {
-  const Flatness flat =
-      measure_flatness(map, static_cast<int>(std::lround(kWindow / map.cell / 2)));
-  const Flatness narrow =
-      measure_flatness(map, static_cast<int>(std::lround(kNarrowWindow / map.cell / 2)));
+std::vector<float> plantness(const HeightMap& map, const std::vector<float>& ground,
+                             const Flatness& narrow) {
+  const Flatness wide = flatness_over(map, kWindow), least = flatness_over(map, kLeastWindow);
+  const auto times = [](double factor, float roughness) {
+    return static_cast<float>(factor) * roughness;
+  };
   std::vector<float> out(map.size(), NAN);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map.top[i] - ground[i] > kLow)) continue;
     const bool is_green = !map.color.empty() && greenness(map.color[i]) > kGrey;
-    const float rough = is_green ? flat.roughness[i]
-                                 : std::min(flat.roughness[i],
-                                            static_cast<float>(kSteepRoof) * narrow.roughness[i]);
+    const float rough = is_green
+                            ? wide.roughness[i]
+                            : std::min({wide.roughness[i], times(kNarrowTimes, narrow.roughness[i]),
+                                        times(kLeastTimes, least.roughness[i])});
     out[i] = static_cast<float>(kRoughWeight) * part(rough, kEven, kUneven);
     if (!map.color.empty())
       out[i] += static_cast<float>(kGreenWeight) * part(greenness(map.color[i]), kGrey, kGreen);
@@ -118,26 +124,50 @@ SceneClass class_beside(const HeightMap& map, const std::vector<float>& plant, s
   return plant[i] >= kRoof ? SceneClass::kPlant : SceneClass::kRest;
 }
 
-/// How much higher the second of two neighbours is; of a sharp map, than the slopes on both sides
-/// of them make it: steep roofs have no steps.
-double rise(const HeightMap& map, std::size_t i, std::size_t j) {
-  const double step = map.top[j] - map.top[i];
-  if (!map.is_sharp) return step;
-  const auto w = static_cast<std::size_t>(map.width);
-  const bool is_row = i / w == j / w;
-  double slope = 0;
-  for (const auto& [from, to] : {std::pair{i, j}, {j, i}}) {
-    const std::size_t beyond = 2 * from - to;  // huge where there is none
-    if (beyond >= map.size() || (is_row && beyond / w != from / w)) continue;
-    if (const double s = std::abs(map.top[from] - map.top[beyond]); s > slope) slope = s;
+/// How much higher one of two neighbours is than the slope of what they lie on makes it: steep
+/// roofs have no steps. Keeps references to both.
+class RoofSteps {
+ public:
+  RoofSteps(const HeightMap& map, const Flatness& narrow) : map_(map), narrow_(narrow) {}
+
+  /// Of the second over the first; metres.
+  double rise(std::size_t i, std::size_t j) const {
+    const double step = map_.top[j] - map_.top[i];
+    const double slope = std::max(slope_at(i, j), slope_at(j, i));
+    return std::copysign(std::max(0.0, std::abs(step) - slope), step);
   }
-  return std::copysign(std::max(0.0, std::abs(step) - slope), step);
-}
+
+ private:
+  bool is_row(std::size_t i, std::size_t j) const {
+    const auto w = static_cast<std::size_t>(map_.width);
+    return i / w == j / w;
+  }
+
+  /// Metres that the surface at a cell rises or falls towards its neighbour.
+  double slope_at(std::size_t i, std::size_t j) const {
+    if (map_.is_sharp) return slope_beyond(i, j);
+    if (!(narrow_.roughness[i] < kSmooth)) return 0;
+    const double slope = std::abs(is_row(i, j) ? narrow_.slope_x[i] : narrow_.slope_y[i]);
+    return std::min(slope, kSteepestRoof) * map_.cell;
+  }
+
+  /// From a cell to the one on its side away from the neighbour; where there is none, nothing.
+  double slope_beyond(std::size_t from, std::size_t to) const {
+    const auto w = static_cast<std::size_t>(map_.width);
+    const std::size_t beyond = 2 * from - to;  // huge where there is none
+    if (beyond >= map_.size() || (is_row(from, to) && beyond / w != from / w)) return 0;
+    const double slope = std::abs(map_.top[from] - map_.top[beyond]);
+    return slope > 0 ? slope : 0;
+  }
+
+  const HeightMap& map_;
+  const Flatness& narrow_;
+};
 
 /// Whether a cell lies well below one beside it: part of a melted wall.
-bool is_on_wall(const HeightMap& map, std::size_t i) {
+bool is_on_wall(const HeightMap& map, const RoofSteps& steps, std::size_t i) {
   bool is_low = false;
-  for_each_neighbour(map, i, [&](std::size_t j) { is_low |= rise(map, i, j) > kWallStep; });
+  for_each_neighbour(map, i, [&](std::size_t j) { is_low |= steps.rise(i, j) > kWallStep; });
   return is_low;
 }
 
@@ -147,8 +177,9 @@ struct Regions {
   std::vector<double> cells;
 };
 
-/// Connected by steps lower than `step`.
-Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, double step) {
+/// Connected by pairs of neighbours that are one.
+template <typename IsOne>
+Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, IsOne is_one) {
   Regions out{std::vector<int>(map.size(), -1), {}};
   for (std::size_t start = 0; start < map.size(); ++start) {
     if (!is_in[start] || out.of_cell[start] >= 0) continue;
@@ -161,7 +192,7 @@ Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, double 
       open.pop_back();
       ++out.cells.back();
       for_each_neighbour(map, i, [&](std::size_t j) {
-        if (is_in[j] && out.of_cell[j] < 0 && std::abs(rise(map, i, j)) < step)
+        if (is_in[j] && out.of_cell[j] < 0 && is_one(i, j))
           out.of_cell[j] = number, open.push_back(j);
       });
     }
@@ -169,8 +200,8 @@ Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, double 
   return out;
 }
 
-/// Cells beside a region at its height join it: those at the foot of a higher roof.
-void take_rims(const HeightMap& map, const std::vector<char>& is_open, Regions& regions) {
+/// Cells beside a region at its height join it, a ring: those at the foot of a higher roof.
+void take_rim(const HeightMap& map, const std::vector<char>& is_open, Regions& regions) {
   const std::vector<int> before = regions.of_cell;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (before[i] >= 0 || !is_open[i]) continue;
@@ -261,6 +292,37 @@ std::vector<char> opened(const HeightMap& map, const std::vector<char>& is_in, i
   return pass(pass(is_in, true), false);
 }
 
+/// Per region whether a square so wide fits into what the regions cover, about one of its cells;
+/// what a source tells is as wide as it likes.
+std::vector<char> wide_ones(const HeightMap& map, const Regions& regions, double width) {
+  std::vector<char> is_in(map.size()), is_wide(regions.cells.size(), 0);
+  for (std::size_t i = 0; i < map.size(); ++i) is_in[i] = regions.of_cell[i] >= 0;
+  const std::vector<char> wide =
+      opened(map, is_in, static_cast<int>(std::lround(width / map.cell / 2)));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const bool is_told = !map.told.empty() && map.told[i] == SceneClass::kBuilding;
+    if (is_in[i] && (wide[i] || is_told)) is_wide[static_cast<std::size_t>(regions.of_cell[i])] = 1;
+  }
+  return is_wide;
+}
+
+/// Per region the number of the building that it is, counted on from `buildings`; −1: it is too
+/// small, low or narrow.
+std::vector<int> number_buildings(const HeightMap& map, const std::vector<float>& ground,
+                                  const Regions& regions, int& buildings) {
+  const std::vector<float> heights = heights_of(map, ground, regions, kHeightShare);
+  const std::vector<char> is_wide = wide_ones(map, regions, kHouseWidth),
+                          is_shed = wide_ones(map, regions, kShedWidth);
+  std::vector<int> number(regions.cells.size(), -1);
+  for (std::size_t r = 0; r < number.size(); ++r) {
+    const double area = regions.cells[r] * map.cell * map.cell;
+    if (area > kLeastBuilding && heights[r] > kLeastHeight &&
+        (is_wide[r] || (is_shed[r] && area < kLargestShed)))
+      number[r] = buildings++;
+  }
+  return number;
+}
+
 /// What stands right beside a building is its parapets and melted walls, down to half its height:
 /// it joins the one whose height is nearest.
 void take_walls(const HeightMap& map, const std::vector<float>& ground,
@@ -286,7 +348,7 @@ void take_clutter(const HeightMap& map, const std::vector<char>& stands,
   for (std::size_t i = 0; i < map.size(); ++i)
     is_in[i] = stands[i] && building[i] < 0 &&
                (map.color.empty() || part(greenness(map.color[i]), kGrey, kGreen) < kRoof);
-  const Regions regions = regions_of(map, is_in, INFINITY);
+  const Regions regions = regions_of(map, is_in, [](std::size_t, std::size_t) { return true; });
   std::vector<std::map<int, int>> rims(regions.cells.size());  // by building
   for (std::size_t i = 0; i < map.size(); ++i)
     if (const int own = regions.of_cell[i]; own >= 0)
@@ -313,25 +375,25 @@ void take_clutter(const HeightMap& map, const std::vector<char>& stands,
 SceneClasses classify(const HeightMap& map) {
   SceneClasses out;
   out.ground = find_terrain(map);
-  std::vector<float> plant = plantness(map, out.ground);
+  const Flatness narrow = flatness_over(map, kNarrowWindow);
+  const RoofSteps steps(map, narrow);
+  std::vector<float> plant = plantness(map, out.ground, narrow);
   believe(map, plant);
   std::vector<char> stands(map.size(), 0), is_open = stands, is_roof = stands;
   for (std::size_t i = 0; i < map.size(); ++i) {
     stands[i] = map.top[i] - out.ground[i] > kLow;
     is_open[i] = stands[i] && plant[i] < kRoof;
-    is_roof[i] = is_open[i] && !is_on_wall(map, i);
+    is_roof[i] = is_open[i] && !is_on_wall(map, steps, i);
   }
   is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
   for (std::size_t i = 0; i < map.told.size(); ++i)
     if (map.told[i] == SceneClass::kBuilding) is_roof[i] = is_open[i];
-  Regions regions = regions_of(map, is_roof, kStep);
-  take_rims(map, is_open, regions);
+  Regions regions = regions_of(map, is_roof, [&](std::size_t i, std::size_t j) {
+    return std::abs(steps.rise(i, j)) < kStep;
+  });
+  for (int round = 0; round < kRimRounds; ++round) take_rim(map, is_open, regions);
   join_small(map, regions);
-  const std::vector<float> heights = heights_of(map, out.ground, regions, kHeightShare);
-  std::vector<int> number(regions.cells.size(), -1);
-  for (std::size_t r = 0; r < number.size(); ++r)
-    if (regions.cells[r] * map.cell * map.cell > kLeastBuilding && heights[r] > kLeastHeight)
-      number[r] = out.buildings++;
+  const std::vector<int> number = number_buildings(map, out.ground, regions, out.buildings);
   out.of_cell.assign(map.size(), SceneClass::kNothing);
   out.building.assign(map.size(), -1);
   for (std::size_t i = 0; i < map.size(); ++i)

@@ -31,8 +31,10 @@ Fit fit(const HeightMap& map, int x, int y, int radius) {
   const double a = along_x / spread, b = along_y / spread;
   const double rest = squares - sum * sum / count - (a * a + b * b) * spread;
   if (std::isnan(rest)) return {};
-  return {static_cast<float>(std::sqrt(std::max(0.0, rest) / count)),
-          static_cast<float>(a / map.cell), static_cast<float>(b / map.cell)};
+  const double slope_x = a / map.cell, slope_y = b / map.cell;
+  const double upright = 1 + slope_x * slope_x + slope_y * slope_y;
+  return {static_cast<float>(std::sqrt(std::max(0.0, rest) / count / upright)),
+          static_cast<float>(slope_x), static_cast<float>(slope_y)};
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace colod {
 
 struct Flatness {
-  std::vector<float> roughness;         ///< metres: root of the mean square off the best plane
+  std::vector<float> roughness;         ///< metres: root of the mean square off the best plane, at
+                                        ///< right angles to it: steep roofs are no rougher
   std::vector<float> slope_x, slope_y;  ///< of that plane
 };
 

@@ -103,26 +103,32 @@ namespace colod::parameters::classes {
 
 constexpr double kLow = 1.5;     // metres over the ground: lower things are its own
 constexpr double kWindow = 3.6;  // metres: narrower than half of a small gable roof
-constexpr double kNarrowWindow =
-    1.7;                            // metres: half of a wing of a steep roof, if it is not green;
-constexpr double kSteepRoof = 3.2;  // that is rough all the same where this many times less wide
+// What is not green may be smooth over less: half of a wing's roof, or a shed's. It is rough all
+// the same where it is so many times less rough than what is looked at in wider windows.
+constexpr double kNarrowWindow = 1.7, kNarrowTimes = 3.2;
+constexpr double kLeastWindow = 1.0, kLeastTimes = 6;
 constexpr double kEven = 0.08, kUneven = 0.4;  // metres off a plane: of roofs, of crowns
 constexpr double kGrey = 0.04, kGreen = 0.16;  // of roofs, of leaves
 constexpr double kRoughWeight = 0.7, kGreenWeight = 0.7;
 constexpr double kRoof = 0.4;         // of these weights: what is less is a roof
 constexpr double kCalm = 2;           // metres that a cell's neighbours decide with it
-constexpr double kNarrow = 2.0;       // metres: walls and fences are narrower than roofs
-constexpr double kWallStep = 0.6;     // metres between neighbours
+constexpr double kNarrow = 1.0;       // metres: fences are narrower than roofs of sheds
+constexpr double kWallStep = 0.6;     // metres between neighbours, over the roof's own slope …
+constexpr double kSteepestRoof = 2;   // … of at most so many metres a metre, 63°, …
+constexpr double kSmooth = 0.15;      // … where the surface is off its plane by less
 constexpr double kStep = 0.6;         // metres between roofs of different buildings
 constexpr double kLeastRoof = 10;     // m²: smaller ones join a neighbour …
 constexpr double kTouching = 0.25;    // … that holds this share of their rim
 constexpr double kSurrounded = 0.55;  // of a rim: a level on a roof
+constexpr int kRimRounds = 5;         // cells at its height that a roof takes in
 constexpr int kWallRounds = 2;        // cells that melted walls are wide, and halves of parapets
 constexpr double kAmid = 0.6;         // of what is rough that buildings are around
 constexpr int kRounds = 10;
-constexpr double kLeastBuilding = 12;  // m²
-constexpr double kHeightShare = 0.7;   // of a roof's cells …
-constexpr double kLeastHeight = 2.2;   // … at least so high
+constexpr double kLeastBuilding = 8;                   // m²: sheds
+constexpr double kHouseWidth = 2.2, kShedWidth = 1.7;  // metres: banks and fences are long, …
+constexpr double kLargestShed = 30;                    // m²: … and sheds are not
+constexpr double kHeightShare = 0.7;                   // of a roof's cells …
+constexpr double kLeastHeight = 2.2;                   // … at least so high
 
 }  // namespace colod::parameters::classes
 

@@ -36,6 +36,18 @@ class Place {
     return *this;
   }
 
+  /// Under a gable along x of so many metres a metre, measured to a few centimetres.
+  Place& gable(double x, double y, double w, double h, double eaves, double slope) {
+    std::mt19937 random(5);
+    cover(x, y, w, h, [&](std::size_t i, double, double v) {
+      const double up = slope * std::min(v - y, y + h - v);
+      const double noise = 0.06 * (static_cast<double>(random() % 1000) / 1000 - 0.5);
+      map_.top[i] = ground_[i] + static_cast<float>(eaves + up + noise);
+      inside_[i] = 1, map_.color[i] = {170, 90, 80};
+    });
+    return *this;
+  }
+
   /// A green, rough dome.
   Place& tree(double x, double y, double radius, double height) {
     std::mt19937 random(7);
@@ -124,6 +136,28 @@ TEST_CASE("a hall larger than the widest block is no terrace, and a terrace is n
   const Place terraces(150, [](double x, double) { return 3 * std::floor(x / 50); });
   CHECK(classify(terraces.map()).buildings == 0);
   CHECK(terraces.ground_error(classify(terraces.map())) < 1);
+}
+
+TEST_CASE("steep roofs are roofs, however narrow") {
+  for (const double degrees : {45, 55, 62}) {
+    CAPTURE(degrees);
+    const double slope = std::tan(degrees * M_PI / 180);
+    Place place(80, kLevel);
+    place.gable(10, 10, 14, 5, 4, slope)
+        .gable(40, 20, 12, 9, 4, slope)
+        .gable(20, 50, 18, 12, 3, slope);
+    const SceneClasses found = classify(place.map());
+    CHECK(found.buildings == 3);
+    CHECK(place.overlap(found) > 0.95);
+  }
+}
+
+TEST_CASE("sheds are buildings, boxes as low as cars and long banks are none") {
+  Place place(80, kLevel);
+  place.house(10, 10, 4, 3, 2.4).house(30, 12, 3.4, 3.4, 2.6).gable(50, 30, 4, 3.2, 2.2, 0.5);
+  CHECK(classify(place.map()).buildings == 3);
+  place.house(10, 40, 4.4, 1.8, 1.4).house(20, 60, 40, 1.8, 2.5);
+  CHECK(classify(place.map()).buildings == 3);
 }
 
 TEST_CASE("on slopes and hills ground stays ground and houses are found") {
