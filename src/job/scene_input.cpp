@@ -87,6 +87,21 @@ std::optional<Georeference> place_of(const TileTree& tree, const SceneOutput& op
   return options.crs == "local" ? std::nullopt : georeference_beside(tree.path);
 }
 
+/// Of a cloud: what it says itself, or lies beside it, is no place where its own points are outside
+/// of it, which is told where the tileset is placed.
+std::optional<Georeference> place_of_cloud(const std::string& input, const SceneOutput& options,
+                                           const Vec3& at) {
+  if (const auto given = georeference_from_options(options.crs, options.origin)) return given;
+  if (options.crs == "local") return {};
+  try {
+    std::optional<Georeference> found = georeference_beside(input);
+    if (found) place_on_earth(*found, at).to_ecef(at);
+    return found;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// A corner that was mistyped would make one plan as large as a country.
 bool reaches_far(const Box& footprint, const Box& scene) {
   const Vec3 beyond = (scene.min - footprint.min).cwiseMax(footprint.max - scene.max);
@@ -364,16 +379,26 @@ std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
   return {};
 }
 
+/// The middle of a map, at the height of some cell.
+Vec3 point_on(const HeightMap& map) {
+  const Vec2 middle = map.middle(map.width / 2, map.height / 2);
+  const auto known =
+      std::find_if(map.top.begin(), map.top.end(), [](float z) { return !std::isnan(z); });
+  return {middle.x(), middle.y(), known == map.top.end() ? 0.0 : *known};
+}
+
 /// `cloud`: that is known already.
 Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
                   const SceneChoice& choice, const SceneOutput& options, const Tell& tell,
                   std::optional<CloudSurface> cloud = {}) {
   TileTree tree = list_tiles(input, read);
-  bool is_ecef = false;
-  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
   Inputs out;
   const std::vector<std::string> clouds = clouds_of(input, tree);
   if (!clouds.empty() && !cloud) cloud = surface_of(clouds, read);
+  bool is_ecef = false;
+  const std::optional<Georeference> place =
+      cloud ? place_of_cloud(input, options, point_on(cloud->map))
+            : place_of(tree, options, is_ecef);
   SceneTiles tiles = cloud ? open_cloud(input, why, std::move(*cloud), out, tell)
                            : open_meshes(input, why,
                                          open_tiles(input, std::move(tree), place, is_ecef,

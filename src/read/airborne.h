@@ -26,6 +26,8 @@ class AirborneCloud {
   AirborneCloud(AirborneCloud&&) noexcept;
 
   bool has_color() const;
+  /// What is to be told of it, one line each, without its name.
+  const std::vector<std::string>& warnings() const;
   /// In the file's order, without noise (classes 7 and 18) and what was withheld.
   void visit(const std::function<void(const AirbornePoint&)>& take) const;
 

@@ -153,11 +153,37 @@ std::array<std::size_t, kKindsOfClass> count_classes(const char* first, const La
 
 }  // namespace
 
-RawFile read_las(const std::string& path, std::string_view bytes) {
+namespace {
+
+/// Metres in one unit of each axis: by --unit, else by the file's own reference system, which is
+/// told.
+Vec3 metric_units(const std::string& path, const ReadOptions& options,
+                  std::vector<std::string>& warnings) {
+  constexpr double kUnlike = 1e-9;  // the two feet differ by 2e-6
+  const CloudUnits own =
+      options.cloud_units ? options.cloud_units(read_cloud_system(path)) : CloudUnits();
+  if (options.unit) {
+    if (!own.text.empty() && ((own.metres.array() - *options.unit).abs() > kUnlike).any())
+      warnings.push_back("its own reference system is in " + own.text +
+                         ", and --unit says otherwise, which is taken");
+    return Vec3::Constant(*options.unit);
+  }
+  if (!own.text.empty())
+    warnings.push_back("read in " + own.text + ", as its own reference system says" +
+                       (own.doubt.empty() ? "" : "; " + own.doubt) +
+                       "; --unit m takes its coordinates for metres");
+  return own.metres;
+}
+
+}  // namespace
+
+RawFile read_las(const std::string& path, std::string_view bytes, const ReadOptions& options) {
   const LasHeader h = read_las_header(path, bytes);
   if (h.is_packed) fail(path, "LAS: its points are packed, as in LAZ: name it .laz");
   check_length(path, h, bytes.size());
   RawFile raw;
+  const Vec3 unit = metric_units(path, options, raw.warnings);
+  raw.is_metric = !options.unit && unit != Vec3::Ones();
   const char* first = bytes.data() + h.begin;
   std::size_t withheld = 0;
   const auto count = count_classes(first, h, withheld);
@@ -173,7 +199,7 @@ RawFile read_las(const std::string& path, std::string_view bytes) {
     Vec3 p;
     for (int k = 0; k < 3; ++k)
       p[k] = value_at<std::int32_t>(point, 4 * k) * h.scale[k] + h.offset[k];
-    raw.points.push_back(p);
+    raw.points.push_back(raw.is_metric ? Vec3(p.cwiseProduct(unit)) : p);
     if (color_at == 0) continue;
     colors.push_back({value_at<std::uint16_t>(point, color_at),
                       value_at<std::uint16_t>(point, color_at + 2),
@@ -212,12 +238,12 @@ std::string unpack_laz(const std::string& path, const Workplace& place) {
 
 RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options) {
   const LasHeader h = read_las_header(path, bytes);
-  if (!h.is_packed) return read_las(path, bytes);
+  if (!h.is_packed) return read_las(path, bytes, options);
   constexpr double kMebi = 1 << 20;
   if (static_cast<double>(h.count) * static_cast<double>(h.length) > options.input_memory * kMebi)
     fail(path, "LAZ: it unpacks to more than --input-memory allows");
   const Workplace place;
-  return read_las(path, read_bytes(unpack_laz(path, place), options.input_memory));
+  return read_las(path, read_bytes(unpack_laz(path, place), options.input_memory), options);
 }
 
 }  // namespace colod::mesh_io
@@ -230,13 +256,14 @@ struct AirborneCloud::Impl {
   std::optional<Workplace> place;  // where a LAZ was unpacked
   std::string file;                // that is read
   mesh_io::LasHeader header;
-  double unit = 1;
+  Vec3 unit = Vec3::Ones();
+  std::vector<std::string> warnings;
 };
 
 AirborneCloud::AirborneCloud(const std::string& path, const ReadOptions& options)
     : impl_(std::make_unique<Impl>()) {
   Impl& own = *impl_;
-  own.unit = options.unit.value_or(1);
+  own.unit = mesh_io::metric_units(path, options, own.warnings);
   own.file = path;
   const auto head_of = [&] {
     std::string head(mesh_io::kNewHeader, '\0');
@@ -256,6 +283,8 @@ AirborneCloud::AirborneCloud(const std::string& path, const ReadOptions& options
 
 AirborneCloud::~AirborneCloud() = default;
 AirborneCloud::AirborneCloud(AirborneCloud&&) noexcept = default;
+
+const std::vector<std::string>& AirborneCloud::warnings() const { return impl_->warnings; }
 
 bool AirborneCloud::has_color() const {
   return mesh_io::kFormats[static_cast<std::size_t>(impl_->header.format)].color > 0;
@@ -279,7 +308,7 @@ void AirborneCloud::visit(const std::function<void(const AirbornePoint&)>& take)
       if (c.is_withheld || c.number == 7 || c.number == 18) continue;  // noise, low and high
       AirbornePoint p{Vec3::Zero(), c.number, {}};
       for (int k = 0; k < 3; ++k)
-        p.at[k] = impl_->unit *
+        p.at[k] = impl_->unit[k] *
                   (value_at<std::int32_t>(point, 4 * static_cast<std::size_t>(k)) * h.scale[k] +
                    h.offset[k]);
       for (std::size_t k = 0; color_at > 0 && k < 3; ++k)

@@ -203,10 +203,12 @@ double cell_for(double density, const CloudFacts& facts, const std::string& path
 
 CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions& options) {
   Clouds clouds;
+  std::vector<std::string> warnings;
   bool has_color = true;
   for (const std::string& file : files) {
     clouds.emplace_back(file, options);
     has_color &= clouds.back().has_color();
+    for (const std::string& w : clouds.back().warnings()) warnings.push_back(file + ": " + w);
   }
   const CloudFacts facts = look_over(clouds);
   if (facts.points < 3) refuse(files[0], "has no points but noise and what was withheld");
@@ -215,6 +217,7 @@ CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions
            "holds points of buildings alone (class 6) and no ground that they stand on: --scene "
            "buildings takes a file for one building");
   CloudSurface out;
+  out.warnings = std::move(warnings);
   out.points = facts.points;
   out.density = static_cast<double>(facts.points) / covered_area(clouds, facts.box);
   const bool has_ground =

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "las_files.h"
+#include "place/place.h"
 #include "program.h"
 
 using namespace colod;
@@ -177,4 +178,84 @@ TEST_CASE("of several clouds one that is a place is told of") {
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.err, Contains("block.las: looks like a scene: 4 buildings"));
   CHECK(report(folder)["buildings"].size() == 2);
+}
+
+namespace {
+
+/// Metres between where the tileset has the first building's origin and where the system puts it.
+double off_by(const TemporaryFolder& folder, const std::string& crs) {
+  const Json tileset = Json::parse(slurp(folder / "out" / "tileset.json"));
+  const Json& shift = tileset["asset"]["extras"]["offset"];
+  const Json origin = report(folder)["buildings"][0]["origin"];
+  Eigen::Matrix4d root;
+  for (int i = 0; i < 16; ++i) root(i) = tileset["root"]["transform"][static_cast<std::size_t>(i)];
+  Vec3 local, at;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    at[k] = origin[i];
+    local[k] = at[k] - shift[i].get<double>();
+  }
+  const Vec3 there = (root * local.homogeneous()).head<3>();
+  return (there - place_on_earth({crs, Vec3::Zero(), "test"}, at).to_ecef(at)).norm();
+}
+
+/// The same place in feet, by its offset and by each point.
+std::string in_feet(std::vector<LasPoint> points) {
+  constexpr double kFoot = 0.3048;
+  for (LasPoint& p : points) p.at /= kFoot;
+  std::string bytes = las(points, 2, 0);
+  for (int k = 0; k < 3; ++k)
+    set_at(bytes, 155 + 8 * static_cast<std::size_t>(k), kLasOffset[k] / kFoot);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("a cloud's own system places its tileset, to a centimetre; an option wins and is told") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "block.las").string();
+  const bool is_feet = GENERATE(false, true);
+  const LasRecord keys = geokeys({{3072, 32632}, {3076, is_feet ? 9002 : 9001}});
+  std::ofstream(path, std::ios::binary)
+      << with_records(is_feet ? in_feet(place_of(2)) : las(place_of(2), 2, 0), {keys});
+  const Ended own = build(folder, path);
+  INFO(own.err);
+  CHECK(own.exit_code == 0);
+  CHECK_THAT(own.err, Contains("placed on Earth: WGS 84 / UTM zone 32N, from " + path));
+  CHECK((own.err.find("read in foot") != std::string::npos) == is_feet);
+  CHECK(off_by(folder, "EPSG:32632") < 0.01);
+  CHECK(report(folder)["buildings"].size() == 4);
+  CHECK(report(folder)["buildings"][0]["layers"].back()["volume"] ==
+        Approx(10 * 12 * 6.5).epsilon(0.15));
+  const std::string tileset = slurp(folder / "out" / "tileset.json");
+  const Ended same = build(folder, path + " --crs EPSG:32632");
+  CHECK(same.err.find("m away from where") == std::string::npos);
+  CHECK(slurp(folder / "out" / "tileset.json") == tileset);
+  const Ended other = build(folder, path + " --crs EPSG:32633");
+  INFO(other.err);
+  CHECK(other.exit_code == 0);
+  CHECK_THAT(other.err, Contains("--crs is taken, which puts it") && Contains(path));
+  CHECK(off_by(folder, "EPSG:32633") < 0.01);
+}
+
+TEST_CASE("a cloud whose own system is of no use stays local, with one warning") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "block.las").string();
+  const auto [record, says] =
+      GENERATE(table<LasRecord, std::string>({{geokeys({{3072, 31999}}), "EPSG:31999"},
+                                              {geokeys({{1024, 2}, {2048, 4326}}), "is in degrees"},
+                                              {{2112, "PROJCS[\"cut"}, "no reference system"},
+                                              {{34735, "cut"}, "are cut or empty"}}));
+  std::ofstream(path, std::ios::binary) << las(place_of(2), 2, 0);
+  REQUIRE(build(folder, path).exit_code == 0);
+  const std::string tileset = slurp(folder / "out" / "tileset.json");
+  std::ofstream(path, std::ios::binary) << with_records(las(place_of(2), 2, 0), {record});
+  const Ended run = build(folder, path);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  const std::size_t at = run.err.find(says);
+  CHECK(at != std::string::npos);
+  CHECK(run.err.find(says, at + 1) == std::string::npos);
+  CHECK_THAT(run.err, Contains("the tileset stays local: use --crs and --origin"));
+  CHECK(slurp(folder / "out" / "tileset.json") == tileset);
 }
