@@ -252,7 +252,7 @@ std::vector<std::string> clouds_of(const std::string& input, const TileTree& tre
   std::size_t meshes = 0;
   for (const TileNode& node : tree.nodes)
     for (const std::string& file : node.contents)
-      if (is_airborne(file))
+      if (is_cloud(file))
         clouds.push_back(file);
       else
         ++meshes;
@@ -284,10 +284,9 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
       is_ecef ? local_from_ecef(*place) : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
   SceneTiles tiles(std::move(tree), to_scene, coarser, !is_ecef, read);
   if (tiles.count() > 0) return tiles;
-  const std::string first =
-      tiles.failures().empty()
-          ? ": they hold no faces; of clouds, LAS and LAZ can be scenes"
-          : ": " + tiles.failures()[0].path + ": " + tiles.failures()[0].message;
+  const std::string first = tiles.failures().empty() ? ": they hold no faces"
+                                                     : ": " + tiles.failures()[0].path + ": " +
+                                                           tiles.failures()[0].message;
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
@@ -302,7 +301,7 @@ PlaceDoubt doubt_of_cloud(const std::string& path, const ReadOptions& read) {
 /// What tells that a file is a place or a piece of one. It is read the way up that it seems to
 /// stand.
 PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
-  if (is_airborne(file.path)) return doubt_of_cloud(file.path, read);
+  if (is_cloud(file.path)) return doubt_of_cloud(file.path, read);
   if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true, ""};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;
@@ -368,7 +367,7 @@ SceneTiles open_meshes(const std::string& input, const std::string& why, SceneTi
 /// The surface of the one cloud that is named, where it shows several buildings; `why` says so.
 std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
                                         const ReadOptions& read, std::string& why) {
-  if (inputs.size() != 1 || !is_airborne(inputs[0])) return {};
+  if (inputs.size() != 1 || !is_cloud(inputs[0])) return {};
   try {
     CloudSurface surface = surface_of(inputs, read);
     why = looks_like_scene(surface.map).place;

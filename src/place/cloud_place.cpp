@@ -222,8 +222,8 @@ std::optional<Georeference> georeference_of_cloud(const std::string& input) {
   std::error_code error;
   const std::vector<std::string> files = std::filesystem::is_directory(input, error)
                                              ? clouds_alone_in(input)
-                                         : is_airborne(input) ? std::vector{input}
-                                                              : std::vector<std::string>();
+                                         : is_las(input) ? std::vector{input}
+                                                         : std::vector<std::string>();
   std::optional<Georeference> found;
   for (const std::string& file : files) {
     Vec3 middle = Vec3::Zero();

@@ -84,7 +84,7 @@ void tell_contradiction(const std::vector<std::string>& paths, const Georeferenc
 }  // namespace
 
 std::string place_key(const std::string& path) {
-  return is_airborne(path) ? path : std::filesystem::path(path).parent_path().string();
+  return is_las(path) ? path : std::filesystem::path(path).parent_path().string();
 }
 
 Placement find_placement(const std::vector<std::string>& source_paths, const std::string& crs,

@@ -171,8 +171,10 @@ std::vector<std::string> clouds_alone_in(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string path = entry.path().string();
     std::error_code unknown;
-    if (!entry.is_regular_file(unknown) || !mesh_io::is_supported(path)) continue;
-    if (!is_airborne(path)) return {};
+    if (!entry.is_regular_file(unknown) || !mesh_io::is_supported(path) ||
+        mesh_io::is_passed_over(path))
+      continue;
+    if (!is_las(path)) return {};
     clouds.push_back(path);
   }
   std::sort(clouds.begin(), clouds.end());

@@ -124,6 +124,9 @@ RawFile read_b3dm(const std::string& path, const std::string& bytes, const ReadO
 /// Farther from 0,0,0 than any local coordinates: such are seen from the middle of the Earth.
 constexpr double kEarth = 6e6;
 
+/// The class that a number stands for, as LAS numbers them; 0: it is none.
+int class_number(double value);
+
 /// Do twenty lines of at least three numbers stand at the head of a text? For files whose names end
 /// in .asc, .csv or .txt, which may hold anything.
 bool is_point_table(const std::string& head);
