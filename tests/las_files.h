@@ -63,4 +63,52 @@ inline std::string las(const std::vector<LasPoint>& points, int minor, int forma
   return bytes;
 }
 
+/// A variable length record; `is_late`: one of LAS 1.4 behind the points.
+struct LasRecord {
+  int id;
+  std::string bytes;
+  bool is_late = false;
+};
+
+/// GeoTIFF's directory of keys that are whole numbers.
+inline LasRecord geokeys(const std::vector<std::array<int, 2>>& keys) {
+  std::string bytes(8 * (1 + keys.size()), '\0');
+  set_at<std::uint16_t>(bytes, 0, 1), set_at<std::uint16_t>(bytes, 2, 1);
+  set_at<std::uint16_t>(bytes, 6, static_cast<std::uint16_t>(keys.size()));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    set_at<std::uint16_t>(bytes, 8 * i + 8, static_cast<std::uint16_t>(keys[i][0]));
+    set_at<std::uint16_t>(bytes, 8 * i + 12, 1);
+    set_at<std::uint16_t>(bytes, 8 * i + 14, static_cast<std::uint16_t>(keys[i][1]));
+  }
+  return {34735, bytes};
+}
+
+/// A LAS with records of the user LASF_Projection.
+inline std::string with_records(std::string bytes, const std::vector<LasRecord>& records) {
+  std::string early, late;
+  std::uint32_t early_count = 0, late_count = 0;
+  for (const LasRecord& r : records) {
+    std::string head(r.is_late ? 60 : 54, '\0');
+    head.replace(2, 15, "LASF_Projection");
+    set_at<std::uint16_t>(head, 18, static_cast<std::uint16_t>(r.id));
+    if (r.is_late)
+      set_at<std::uint64_t>(head, 20, r.bytes.size());
+    else
+      set_at<std::uint16_t>(head, 20, static_cast<std::uint16_t>(r.bytes.size()));
+    (r.is_late ? late : early) += head + r.bytes;
+    ++(r.is_late ? late_count : early_count);
+  }
+  std::uint16_t head_size;
+  std::memcpy(&head_size, bytes.data() + 94, 2);
+  std::uint32_t begin;
+  std::memcpy(&begin, bytes.data() + 96, 4);
+  set_at<std::uint32_t>(bytes, 96, begin + static_cast<std::uint32_t>(early.size()));
+  set_at<std::uint32_t>(bytes, 100, early_count);
+  if (late_count > 0) {
+    set_at<std::uint64_t>(bytes, 235, bytes.size() + early.size());
+    set_at<std::uint32_t>(bytes, 243, late_count);
+  }
+  return bytes.insert(head_size, early) + late;
+}
+
 }  // namespace colod::test

@@ -4,11 +4,13 @@
 #include "cli.h"
 #include "job/scene_choice.h"
 #include "numbers.h"
+#include "place/cloud_place.h"
 #include "read/read.h"
 
 namespace colod::cli {
 
 inline void add_input_options(CLI::App& app, ReadOptions& read) {
+  read.cloud_units = units_of_cloud;
   app.add_option_function<std::string>(
          "--up",
          [&read](const std::string& v) {
@@ -27,8 +29,9 @@ inline void add_input_options(CLI::App& app, ReadOptions& read) {
                        : v == "ft" ? 0.3048
                                    : 1.0;
          },
-         "the files' unit, glTF's too: m (default, with a warning where sizes tell otherwise), cm, "
-         "mm, in, ft")
+         "the files' unit, glTF's too: m (default, with a warning where sizes tell otherwise; of "
+         "LAS "
+         "what its own reference system says), cm, mm, in, ft")
       ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}));
   app.add_option(
          "--input-memory", read.input_memory,

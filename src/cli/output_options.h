@@ -109,7 +109,8 @@ inline void add_output_options(CLI::App& app, OutputOptions& a) {
   app.add_option(
       "--crs", a.crs,
       "where on Earth the input is: EPSG:n of a projected system, EPSG:n+m with heights, "
-      "or local; default: what metadata.xml, ODM or Pix4D files beside the input say");
+      "or local; default: what a LAS says itself, or metadata.xml, ODM or Pix4D files beside the "
+      "input");
   app.add_option("--origin", a.origin,
                  "added to the input's coordinates: easting,northing[,height] in --crs; without "
                  "--crs latitude,longitude[,height] of the input's origin")

@@ -87,6 +87,21 @@ std::optional<Georeference> place_of(const TileTree& tree, const SceneOutput& op
   return options.crs == "local" ? std::nullopt : georeference_beside(tree.path);
 }
 
+/// Of a cloud: what it says itself, or lies beside it, is no place where its own points are outside
+/// of it, which is told where the tileset is placed.
+std::optional<Georeference> place_of_cloud(const std::string& input, const SceneOutput& options,
+                                           const Vec3& at) {
+  if (const auto given = georeference_from_options(options.crs, options.origin)) return given;
+  if (options.crs == "local") return {};
+  try {
+    std::optional<Georeference> found = georeference_beside(input);
+    if (found) place_on_earth(*found, at).to_ecef(at);
+    return found;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// A corner that was mistyped would make one plan as large as a country.
 bool reaches_far(const Box& footprint, const Box& scene) {
   const Vec3 beyond = (scene.min - footprint.min).cwiseMax(footprint.max - scene.max);
@@ -237,7 +252,7 @@ std::vector<std::string> clouds_of(const std::string& input, const TileTree& tre
   std::size_t meshes = 0;
   for (const TileNode& node : tree.nodes)
     for (const std::string& file : node.contents)
-      if (is_airborne(file))
+      if (is_cloud(file))
         clouds.push_back(file);
       else
         ++meshes;
@@ -269,10 +284,9 @@ SceneTiles open_tiles(const std::string& input, TileTree tree,
       is_ecef ? local_from_ecef(*place) : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
   SceneTiles tiles(std::move(tree), to_scene, coarser, !is_ecef, read);
   if (tiles.count() > 0) return tiles;
-  const std::string first =
-      tiles.failures().empty()
-          ? ": they hold no faces; of clouds, LAS and LAZ can be scenes"
-          : ": " + tiles.failures()[0].path + ": " + tiles.failures()[0].message;
+  const std::string first = tiles.failures().empty() ? ": they hold no faces"
+                                                     : ": " + tiles.failures()[0].path + ": " +
+                                                           tiles.failures()[0].message;
   throw Error(Stage::kInput, input, "none of its tiles can be read" + first);
 }
 
@@ -287,7 +301,7 @@ PlaceDoubt doubt_of_cloud(const std::string& path, const ReadOptions& read) {
 /// What tells that a file is a place or a piece of one. It is read the way up that it seems to
 /// stand.
 PlaceDoubt doubt(const InputFile& file, ReadOptions read) {
-  if (is_airborne(file.path)) return doubt_of_cloud(file.path, read);
+  if (is_cloud(file.path)) return doubt_of_cloud(file.path, read);
   if (is_tile_format(file.path)) return {"is a tile of a scene by its format", true, ""};
   const bool is_axis_said = read.up != Up::kUnsaid;
   if (!is_axis_said) read.up = Up::kAuto;
@@ -353,7 +367,7 @@ SceneTiles open_meshes(const std::string& input, const std::string& why, SceneTi
 /// The surface of the one cloud that is named, where it shows several buildings; `why` says so.
 std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
                                         const ReadOptions& read, std::string& why) {
-  if (inputs.size() != 1 || !is_airborne(inputs[0])) return {};
+  if (inputs.size() != 1 || !is_cloud(inputs[0])) return {};
   try {
     CloudSurface surface = surface_of(inputs, read);
     why = looks_like_scene(surface.map).place;
@@ -364,16 +378,26 @@ std::optional<CloudSurface> whole_cloud(const std::vector<std::string>& inputs,
   return {};
 }
 
+/// The middle of a map, at the height of some cell.
+Vec3 point_on(const HeightMap& map) {
+  const Vec2 middle = map.middle(map.width / 2, map.height / 2);
+  const auto known =
+      std::find_if(map.top.begin(), map.top.end(), [](float z) { return !std::isnan(z); });
+  return {middle.x(), middle.y(), known == map.top.end() ? 0.0 : *known};
+}
+
 /// `cloud`: that is known already.
 Inputs open_scene(const std::string& input, const std::string& why, const ReadOptions& read,
                   const SceneChoice& choice, const SceneOutput& options, const Tell& tell,
                   std::optional<CloudSurface> cloud = {}) {
   TileTree tree = list_tiles(input, read);
-  bool is_ecef = false;
-  const std::optional<Georeference> place = place_of(tree, options, is_ecef);
   Inputs out;
   const std::vector<std::string> clouds = clouds_of(input, tree);
   if (!clouds.empty() && !cloud) cloud = surface_of(clouds, read);
+  bool is_ecef = false;
+  const std::optional<Georeference> place =
+      cloud ? place_of_cloud(input, options, point_on(cloud->map))
+            : place_of(tree, options, is_ecef);
   SceneTiles tiles = cloud ? open_cloud(input, why, std::move(*cloud), out, tell)
                            : open_meshes(input, why,
                                          open_tiles(input, std::move(tree), place, is_ecef,

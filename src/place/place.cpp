@@ -4,7 +4,6 @@
 // Notation: phi, lambda latitude and longitude in radians; e2 the ellipsoid's eccentricity squared.
 #include "place.h"
 
-#include <proj.h>
 #include <proj_experimental.h>  // proj_crs_promote_to_3D
 
 #include <algorithm>
@@ -17,8 +16,10 @@
 #include <regex>
 #include <sstream>
 
+#include "cloud_place.h"
 #include "core/error.h"
 #include "local.h"
+#include "proj_objects.h"
 
 namespace colod {
 
@@ -168,43 +169,11 @@ EarthMap local_at(const Georeference& g) {
   return map;
 }
 
-struct ContextDeleter {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-};
-struct PjDeleter {
-  void operator()(PJ* pj) const { proj_destroy(pj); }
-};
-using ContextPtr = std::unique_ptr<PJ_CONTEXT, ContextDeleter>;
-using PjPtr = std::unique_ptr<PJ, PjDeleter>;
-
 /// One operation with the context it lives in; used by one thread at a time.
 struct Operation {
   ContextPtr context;  // outlives the operation
   PjPtr pj;
 };
-
-ContextPtr make_context() {
-  ContextPtr context(proj_context_create());
-  proj_log_level(context.get(), PJ_LOG_NONE);
-  return context;
-}
-
-/// The horizontal part of a compound CRS, else the CRS itself.
-PjPtr horizontal_part(PJ_CONTEXT* context, PJ* crs) {
-  if (proj_get_type(crs) == PJ_TYPE_COMPOUND_CRS)
-    return PjPtr(proj_crs_get_sub_crs(context, crs, 0));
-  return PjPtr(proj_clone(context, crs));
-}
-
-/// Metres in the unit of a CRS's axis.
-double axis_unit(PJ_CONTEXT* context, PJ* crs, int axis) {
-  const PjPtr system(proj_crs_get_coordinate_system(context, crs));
-  double metres = 1;
-  if (system)
-    proj_cs_get_axis_info(context, system.get(), axis, nullptr, nullptr, nullptr, &metres, nullptr,
-                          nullptr, nullptr);
-  return metres;
-}
 
 /// What transforms coordinates of a CRS; without the heights' reference when `is_flat`.
 class Transformer {
@@ -243,19 +212,20 @@ class Transformer {
     if (!crs || !proj_is_crs(crs.get()))
       throw Error(Stage::kUsage, georeference_.source,
                   "unknown coordinate reference system: " + shortened(georeference_.crs));
-    const PjPtr flat = horizontal_part(context, crs.get());
-    if (!flat || proj_get_type(flat.get()) != PJ_TYPE_PROJECTED_CRS)
+    const PjPtr flat = horizontal_part(context, crs.get(), false);
+    const PjPtr own = horizontal_part(context, crs.get(), true);
+    if (!own || proj_get_type(own.get()) != PJ_TYPE_PROJECTED_CRS)
       throw Error(Stage::kUsage, georeference_.source,
                   shortened(georeference_.crs) +
                       " is not a projected system in metres; for a place in degrees use --origin "
                       "latitude,longitude,height");
     name_ = proj_get_name(crs.get());
     is_compound_ = proj_get_type(crs.get()) == PJ_TYPE_COMPOUND_CRS;
-    const double horizontal = axis_unit(context, flat.get(), 0);
-    double vertical = 1;
+    const double horizontal = axis_unit(context, own.get(), 0);
+    double vertical = axis_unit(context, own.get(), 2);
     if (is_compound_ && !is_flat_) {
-      const PjPtr heights(proj_crs_get_sub_crs(context, crs.get(), 1));
-      vertical = axis_unit(context, heights.get(), 0);
+      const PjPtr heights = vertical_part(context, crs.get());
+      if (heights) vertical = axis_unit(context, heights.get(), 0);
     } else {
       crs.reset(proj_crs_promote_to_3D(context, nullptr, flat.get()));
       if (!crs) crs.reset(proj_clone(context, flat.get()));
@@ -301,8 +271,10 @@ std::optional<Georeference> georeference_from_options(const std::string& crs,
   return out;
 }
 
-std::optional<Georeference> georeference_beside(const std::string& input) {
-  if (auto own = georeference_of_tileset(input)) return own;
+namespace {
+
+/// By files that lie beside the input.
+std::optional<Georeference> from_sidecars(const std::string& input) {
   const std::vector<fs::path> folders = folders_of(input);
   for (const fs::path& folder : folders)
     if (is_there(folder / "metadata.xml"))
@@ -320,6 +292,36 @@ std::optional<Georeference> georeference_beside(const std::string& input) {
   for (const fs::path& path : offsets)
     if (auto found = from_pix4d(path)) return found;
   return {};
+}
+
+/// A cloud's own word, unless it is of no use and a file beside it knows better.
+std::optional<Georeference> own_or_beside(const std::string& input) {
+  std::optional<Georeference> own, beside;
+  std::optional<Error> no_use;
+  try {
+    own = georeference_of_cloud(input);
+  } catch (const Error& error) {
+    no_use = error;
+  }
+  if (!own && !no_use) return from_sidecars(input);
+  try {
+    beside = from_sidecars(input);
+  } catch (const Error& error) {
+    if (own) own->warnings.push_back(error.what());
+  }
+  if (no_use && !beside) throw *no_use;
+  if (no_use) beside->warnings.push_back(no_use->what());
+  if (own && beside && own->crs != beside->crs)
+    own->warnings.push_back(own->source + " says itself where it is, which is taken; " +
+                            beside->source + " says " + shortened(beside->crs));
+  return own ? own : beside;
+}
+
+}  // namespace
+
+std::optional<Georeference> georeference_beside(const std::string& input) {
+  if (auto own = georeference_of_tileset(input)) return own;
+  return own_or_beside(input);
 }
 
 EarthMap place_on_earth(const Georeference& g, const Vec3& probe) {

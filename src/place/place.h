@@ -15,6 +15,7 @@ struct Georeference {
   std::string crs;             ///< "EPSG:n", "EPSG:n+m", WKT, or "ENU:latitude,longitude" (degrees)
   Vec3 offset = Vec3::Zero();  ///< easting, northing, height; metres
   std::string source;          ///< the option or the file that says so, for messages
+  std::vector<std::string> warnings = {};  ///< what contradicts it or was left out, one line each
 };
 
 /// A georeference ready for use.
@@ -41,12 +42,14 @@ std::optional<Georeference> georeference_of_tileset(const std::string& path);
 /// ECEF → the axes of a georeference "ENU:latitude,longitude,height", in metres.
 Eigen::Matrix4d local_from_ecef(const Georeference& georeference);
 
-/// From a tileset.json or .3tz itself, else from files beside an input file or folder: metadata.xml
-/// (SRS, SRSOrigin; also above folders called Data and Tile_*), odm_georeferencing_model_geo.txt
-/// (from folders odm_* also in
+/// From a tileset.json, a .3tz, a LAS or LAZ or a folder of these itself, else from files beside an
+/// input file or folder: metadata.xml (SRS, SRSOrigin; also above folders called Data and Tile_*),
+/// odm_georeferencing_model_geo.txt (from folders odm_* also in
 /// ../odm_georeferencing), Pix4D's
-/// *_offset.xyz with its .prj. Nothing where there is none. Throws Error{kInput} naming a file that
-/// is there and cannot be understood.
+/// *_offset.xyz with its .prj. Nothing where there is none. Of a cloud that says itself where it
+/// is, files beside it that say otherwise are a warning, and where its own word is of no use, they
+/// stand for it with one. Throws Error{kInput} naming a file that is there and cannot be
+/// understood.
 std::optional<Georeference> georeference_beside(const std::string& input);
 
 /// Coordinates are always easting, northing, height, whatever order the CRS declares its axes in,

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "place/cloud_place.h"
 #include "store/options_text.h"
 
 namespace colod {
@@ -51,6 +52,7 @@ ReadOptions read_options_of(const Json& json) {
   o.input_memory = json.at("input_memory");
   o.is_recursive = json.at("recursive");
   if (json.contains("unit")) o.unit = json.at("unit").get<double>();
+  o.cloud_units = units_of_cloud;
   return o;
 }
 

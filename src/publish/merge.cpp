@@ -56,13 +56,12 @@ void check_files(const MergedCell& cell, const std::vector<CellRecord>& records,
 class Folders {
  public:
   void add(const std::string& path, std::size_t place) {
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    const auto [found, is_new] = first_.try_emplace(folder, place, path);
+    const auto [found, is_new] = first_.try_emplace(place_key(path), place, path);
     if (!is_new && place < found->second.first) found->second = {place, path};
   }
   std::vector<std::string> paths() const {
     std::map<std::size_t, std::string> by_place;
-    for (const auto& [folder, first] : first_) by_place.insert(first);
+    for (const auto& [key, first] : first_) by_place.insert(first);
     std::vector<std::string> all;
     for (const auto& [place, path] : by_place) all.push_back(path);
     return all;

@@ -106,15 +106,6 @@ bool is_own_output(const fs::path& folder) {
          (is_report(folder / "report.json") && fs::exists(folder / "buildings", error));
 }
 
-/// A file of a folder that is no building: macOS' shadows, offsets, texts that are no table.
-bool is_passed_over(const fs::path& path) {
-  const std::string name = path.filename().string();
-  if (name.starts_with("._") || name.ends_with("_offset.xyz")) return true;
-  std::error_code error;
-  return is_in(ending_of(path), kTables) && fs::is_regular_file(path, error) &&
-         !is_point_table(as_text(head(path)));
-}
-
 /// What a folder holds, by what is done with it.
 struct Folder {
   std::vector<std::string> files;    // to be read
@@ -222,6 +213,14 @@ void keep_each_once(InputList& list) {
 }
 
 }  // namespace
+
+bool is_passed_over(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (name.starts_with("._") || name.ends_with("_offset.xyz")) return true;
+  std::error_code error;
+  return is_in(ending_of(path), kTables) && fs::is_regular_file(path, error) &&
+         !is_point_table(as_text(head(path)));
+}
 
 std::string lower(std::string s) {
   for (char& c : s)

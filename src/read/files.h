@@ -12,6 +12,10 @@ std::string lower(std::string s);
 /// By its extension.
 bool is_supported(const std::filesystem::path& path);
 
+/// A file of a folder that is no model for all its name: macOS' shadows, offsets, texts that are no
+/// table.
+bool is_passed_over(const std::filesystem::path& path);
+
 /// How a file of a known format that is not read becomes one that is; empty: unknown format.
 std::string foreign_advice(const std::filesystem::path& path);
 

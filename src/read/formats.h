@@ -36,6 +36,7 @@ struct RawFile {
   bool is_soup = false;               ///< faces share no points (STL, glTF): weld equal ones
   bool is_from_memory = false;        ///< no other file stands beside it
   bool is_turned = false;             ///< already z up (glTF turns itself)
+  bool is_metric = false;             ///< in metres, by the file's own word
   Vec3 origin = Vec3::Zero();         ///< metres, added after units and axes (our own GLBs' extras)
 
   int face_count() const { return static_cast<int>(face_begin.size()); }
@@ -110,7 +111,7 @@ RawFile read_stl(const std::string& path, const std::string& bytes);
 RawFile read_points(const std::string& path, const std::string& bytes, bool is_pwn);
 /// LAS 1.0 to 1.4: the points of class 6 (building); in a file without any, those whose class is
 /// not ground, plants, noise or another known thing. LAZ is unpacked by laszip, las2las or pdal.
-RawFile read_las(const std::string& path, std::string_view bytes);
+RawFile read_las(const std::string& path, std::string_view bytes, const ReadOptions& options);
 RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options);
 RawFile read_ply(const std::string& path, const std::string& bytes);
 /// `options` say which level is read, and what it and the files beside it may take. `begin`: where
@@ -122,6 +123,9 @@ RawFile read_b3dm(const std::string& path, const std::string& bytes, const ReadO
 
 /// Farther from 0,0,0 than any local coordinates: such are seen from the middle of the Earth.
 constexpr double kEarth = 6e6;
+
+/// The class that a number stands for, as LAS numbers them; 0: it is none.
+int class_number(double value);
 
 /// Do twenty lines of at least three numbers stand at the head of a text? For files whose names end
 /// in .asc, .csv or .txt, which may hold anything.

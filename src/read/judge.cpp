@@ -243,7 +243,8 @@ void judge_unit(const RawFile& raw, const Facts& facts, const ReadOptions& optio
   const double narrow = std::min(size[0], size[3 - up]);
   const bool is_house_of_giants =
       height > kTall && narrow > kBroad && height > kLikeHouse * wide && height < kLikeTower * wide;
-  if (const std::string unit = named_unit(raw, system); !unit.empty()) {
+  const std::string unit = raw.is_metric ? "" : named_unit(raw, system);
+  if (!unit.empty()) {
     how.doubts.push_back("its head or its .prj says that its unit is " + unit +
                          ", it is read as metres: --unit " + unit + " takes it as such");
   } else if (height > kTallest || is_house_of_giants) {

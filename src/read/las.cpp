@@ -6,12 +6,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <memory>
 
-#include "airborne.h"
 #include "core/program.h"
 #include "files.h"
 #include "formats.h"
+#include "streams.h"
 
 namespace colod::mesh_io {
 
@@ -153,11 +153,37 @@ std::array<std::size_t, kKindsOfClass> count_classes(const char* first, const La
 
 }  // namespace
 
-RawFile read_las(const std::string& path, std::string_view bytes) {
+namespace {
+
+/// Metres in one unit of each axis: by --unit, else by the file's own reference system, which is
+/// told.
+Vec3 metric_units(const std::string& path, const ReadOptions& options,
+                  std::vector<std::string>& warnings) {
+  constexpr double kUnlike = 1e-9;  // the two feet differ by 2e-6
+  const CloudUnits own =
+      options.cloud_units ? options.cloud_units(read_cloud_system(path)) : CloudUnits();
+  if (options.unit) {
+    if (!own.text.empty() && ((own.metres.array() - *options.unit).abs() > kUnlike).any())
+      warnings.push_back("its own reference system is in " + own.text +
+                         ", and --unit says otherwise, which is taken");
+    return Vec3::Constant(*options.unit);
+  }
+  if (!own.text.empty())
+    warnings.push_back("read in " + own.text + ", as its own reference system says" +
+                       (own.doubt.empty() ? "" : "; " + own.doubt) +
+                       "; --unit m takes its coordinates for metres");
+  return own.metres;
+}
+
+}  // namespace
+
+RawFile read_las(const std::string& path, std::string_view bytes, const ReadOptions& options) {
   const LasHeader h = read_las_header(path, bytes);
   if (h.is_packed) fail(path, "LAS: its points are packed, as in LAZ: name it .laz");
   check_length(path, h, bytes.size());
   RawFile raw;
+  const Vec3 unit = metric_units(path, options, raw.warnings);
+  raw.is_metric = !options.unit && unit != Vec3::Ones();
   const char* first = bytes.data() + h.begin;
   std::size_t withheld = 0;
   const auto count = count_classes(first, h, withheld);
@@ -173,7 +199,7 @@ RawFile read_las(const std::string& path, std::string_view bytes) {
     Vec3 p;
     for (int k = 0; k < 3; ++k)
       p[k] = value_at<std::int32_t>(point, 4 * k) * h.scale[k] + h.offset[k];
-    raw.points.push_back(p);
+    raw.points.push_back(raw.is_metric ? Vec3(p.cwiseProduct(unit)) : p);
     if (color_at == 0) continue;
     colors.push_back({value_at<std::uint16_t>(point, color_at),
                       value_at<std::uint16_t>(point, color_at + 2),
@@ -212,86 +238,71 @@ std::string unpack_laz(const std::string& path, const Workplace& place) {
 
 RawFile read_laz(const std::string& path, std::string_view bytes, const ReadOptions& options) {
   const LasHeader h = read_las_header(path, bytes);
-  if (!h.is_packed) return read_las(path, bytes);
+  if (!h.is_packed) return read_las(path, bytes, options);
   constexpr double kMebi = 1 << 20;
   if (static_cast<double>(h.count) * static_cast<double>(h.length) > options.input_memory * kMebi)
     fail(path, "LAZ: it unpacks to more than --input-memory allows");
   const Workplace place;
-  return read_las(path, read_bytes(unpack_laz(path, place), options.input_memory));
+  return read_las(path, read_bytes(unpack_laz(path, place), options.input_memory), options);
 }
 
-}  // namespace colod::mesh_io
+namespace {
 
-namespace colod {
-
-namespace fs = std::filesystem;
-
-struct AirborneCloud::Impl {
-  std::optional<Workplace> place;  // where a LAZ was unpacked
-  std::string file;                // that is read
-  mesh_io::LasHeader header;
-  double unit = 1;
-};
-
-AirborneCloud::AirborneCloud(const std::string& path, const ReadOptions& options)
-    : impl_(std::make_unique<Impl>()) {
-  Impl& own = *impl_;
-  own.unit = options.unit.value_or(1);
-  own.file = path;
-  const auto head_of = [&] {
-    std::string head(mesh_io::kNewHeader, '\0');
-    std::ifstream in(own.file, std::ios::binary);
-    in.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(in.gcount()));
-    return head;
-  };
-  own.header = mesh_io::read_las_header(path, head_of());
-  if (own.header.is_packed) {
-    own.place.emplace();
-    own.file = mesh_io::unpack_laz(path, *own.place);
-    own.header = mesh_io::read_las_header(path, head_of());
-  }
-  mesh_io::check_length(path, own.header, fs::file_size(own.file));
+/// The first bytes of a file.
+std::string las_head(const std::string& file) {
+  std::string head(kNewHeader, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head;
 }
 
-AirborneCloud::~AirborneCloud() = default;
-AirborneCloud::AirborneCloud(AirborneCloud&&) noexcept = default;
-
-bool AirborneCloud::has_color() const {
-  return mesh_io::kFormats[static_cast<std::size_t>(impl_->header.format)].color > 0;
+AirbornePoint las_point(std::string_view point, const LasHeader& h, int kind) {
+  const std::size_t color_at = kFormats[static_cast<std::size_t>(h.format)].color;
+  AirbornePoint p{Vec3::Zero(), kind, {}};
+  for (int k = 0; k < 3; ++k)
+    p.at[k] =
+        value_at<std::int32_t>(point, 4 * static_cast<std::size_t>(k)) * h.scale[k] + h.offset[k];
+  for (std::size_t k = 0; color_at > 0 && k < 3; ++k)
+    p.color[k] = value_at<std::uint16_t>(point, color_at + 2 * k);
+  return p;
 }
 
-void AirborneCloud::visit(const std::function<void(const AirbornePoint&)>& take) const {
-  using mesh_io::value_at;
+/// All points but those that were withheld.
+void visit_las(const std::string& file, const LasHeader& h, const TakePoint& take) {
   constexpr std::uint64_t kBlock = 1 << 15;  // points that are in memory
-  const mesh_io::LasHeader& h = impl_->header;
-  const std::size_t color_at = mesh_io::kFormats[static_cast<std::size_t>(h.format)].color;
-  std::ifstream in(impl_->file, std::ios::binary);
+  std::ifstream in(file, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(h.begin));
   std::string block;
   for (std::uint64_t done = 0; done < h.count; done += kBlock) {
     block.resize(static_cast<std::size_t>(std::min(kBlock, h.count - done)) * h.length);
     in.read(block.data(), static_cast<std::streamsize>(block.size()));
-    if (!in) mesh_io::fail(impl_->file, "LAS: cannot be read to its end");
+    if (!in) fail(file, "LAS: cannot be read to its end");
     for (std::size_t at = 0; at < block.size(); at += h.length) {
       const std::string_view point(block.data() + at, h.length);
-      const mesh_io::PointClass c = mesh_io::class_of(point.data(), h.format);
-      if (c.is_withheld || c.number == 7 || c.number == 18) continue;  // noise, low and high
-      AirbornePoint p{Vec3::Zero(), c.number, {}};
-      for (int k = 0; k < 3; ++k)
-        p.at[k] = impl_->unit *
-                  (value_at<std::int32_t>(point, 4 * static_cast<std::size_t>(k)) * h.scale[k] +
-                   h.offset[k]);
-      for (std::size_t k = 0; color_at > 0 && k < 3; ++k)
-        p.color[k] = value_at<std::uint16_t>(point, color_at + 2 * k);
-      take(p);
+      const PointClass c = class_of(point.data(), h.format);
+      if (!c.is_withheld) take(las_point(point, h, c.number));
     }
   }
 }
 
-bool is_airborne(const std::string& path) {
-  const std::string e = mesh_io::lower(fs::path(path).extension().string());
-  return e == ".las" || e == ".laz";
+}  // namespace
+
+PointStream stream_las(const std::string& path, const ReadOptions& options) {
+  PointStream out;
+  out.unit = metric_units(path, options, out.warnings);
+  std::string file = path;
+  std::shared_ptr<Workplace> place;  // where a LAZ was unpacked
+  LasHeader header = read_las_header(path, las_head(path));
+  if (header.is_packed) {
+    place = std::make_shared<Workplace>();
+    file = unpack_laz(path, *place);
+    header = read_las_header(path, las_head(file));
+  }
+  check_length(path, header, std::filesystem::file_size(file));
+  out.has_color = kFormats[static_cast<std::size_t>(header.format)].color > 0;
+  out.visit = [file, place, header](const TakePoint& take) { visit_las(file, header, take); };
+  return out;
 }
 
-}  // namespace colod
+}  // namespace colod::mesh_io

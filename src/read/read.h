@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cloud_system.h"
 #include "core/geometry.h"
 
 namespace colod {
@@ -35,8 +36,10 @@ struct ReadOptions {
   double input_memory = 2048;  ///< MiB that one file may take, with those that it names; checked
                                ///< before they are read
   bool is_recursive = false;   ///< folders with their subfolders
-  int coarser = 0;  ///< glTF: that many levels of MSFT_lod down from the finest; an error
-                    ///< where there are fewer
+  int coarser = 0;           ///< glTF: that many levels of MSFT_lod down from the finest; an error
+                             ///< where there are fewer
+  UnitsOf cloud_units = {};  ///< of LAS and LAZ, where `unit` is not given; empty: metres. Room
+                             ///< `place` knows them: units_of_cloud
 };
 
 /// A file that could not be read; the others go on.

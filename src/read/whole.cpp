@@ -20,7 +20,7 @@ RawFile read_raw(const std::string& path, const ReadOptions& options) {
   if (e == ".stl") return read_stl(path, bytes);
   if (e == ".glb") return read_gltf(path, bytes, options);
   if (e == ".b3dm") return read_b3dm(path, bytes, options);
-  if (e == ".las") return read_las(path, bytes);
+  if (e == ".las") return read_las(path, bytes, options);
   if (e == ".laz") return read_laz(path, bytes, options);
   bytes = as_text(std::move(bytes));
   if (e == ".obj") return read_obj(path, bytes);

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <limits>
 #include <set>
+#include <sstream>
 
 #include "core/error.h"
 #include "parameters.h"
@@ -199,22 +202,52 @@ double cell_for(double density, const CloudFacts& facts, const std::string& path
                    std::sqrt(size.x() * size.y() / parameters::survey::kMostCells)});
 }
 
+/// What tells that coordinates have too few digits for where they are.
+void tell_rounding(const std::vector<std::string>& files, const Clouds& clouds, const Box& box,
+                   std::vector<std::string>& warnings) {
+  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  const double step = farthest * std::numeric_limits<float>::epsilon();
+  if (step < kCoarsestStep) return;
+  std::ostringstream size;
+  size << std::setprecision(2) << step;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (clouds[i].is_single())
+      warnings.push_back(files[i] +
+                         ": its coordinates are of single precision, which is as coarse as " +
+                         size.str() +
+                         " m where they lie: write them in double precision, or less an "
+                         "offset that --origin then says");
+}
+
+/// Of coordinates in degrees or in another unit.
+void check_extent(const std::string& path, const Box& box) {
+  if (box.size().head<2>().maxCoeff() >= kNarrowestPlace) return;
+  refuse(path, "is less than " + std::to_string(static_cast<int>(kNarrowestPlace)) +
+                   " m wide: coordinates in degrees must be projected first (PROJ's cs2cs, QGIS), "
+                   "other units --unit says");
+}
+
 }  // namespace
 
 CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions& options) {
   Clouds clouds;
+  std::vector<std::string> warnings;
   bool has_color = true;
   for (const std::string& file : files) {
     clouds.emplace_back(file, options);
     has_color &= clouds.back().has_color();
+    for (const std::string& w : clouds.back().warnings()) warnings.push_back(file + ": " + w);
   }
   const CloudFacts facts = look_over(clouds);
   if (facts.points < 3) refuse(files[0], "has no points but noise and what was withheld");
+  check_extent(files[0], facts.box);
+  tell_rounding(files, clouds, facts.box, warnings);
   if (facts.buildings == facts.points)
     refuse(files[0],
            "holds points of buildings alone (class 6) and no ground that they stand on: --scene "
            "buildings takes a file for one building");
   CloudSurface out;
+  out.warnings = std::move(warnings);
   out.points = facts.points;
   out.density = static_cast<double>(facts.points) / covered_area(clouds, facts.box);
   const bool has_ground =

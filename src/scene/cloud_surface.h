@@ -20,8 +20,9 @@ struct CloudSurface {
 /// of class 6 (building) the highest of these, so that crowns do not hide roofs. Ground is where
 /// class 2 is, if 2 % of the points have it. Heights are moved to the middles of cells along slopes
 /// that the neighbours agree on. Files of one place become one surface. Reads each file three
-/// times, in blocks; memory follows the cells. Throws Error{kInput} for clouds that are broken,
-/// have fewer than about one point in 2 m², or have points of buildings alone.
+/// times, in blocks, a table once more; memory follows the cells. Throws Error{kInput} for clouds
+/// that are broken, have fewer than about one point in 2 m², are less than 3 m wide (degrees,
+/// perhaps), or have points of buildings alone.
 CloudSurface surface_of(const std::vector<std::string>& files, const ReadOptions& options);
 
 /// Squares of a map as meshes, neighbours with the same vertices on their common border.

@@ -72,6 +72,8 @@ constexpr int kFillRounds = 4;          // cells from either side that a gap is 
 constexpr int kSlopeRounds = 3;         // until slopes and heights agree
 constexpr double kSteepestSurface = 2;  // metres a metre: what is steeper is a wall, not a roof
 constexpr int kTile = 128;              // cells a side
+constexpr double kNarrowestPlace = 3;   // metres: what is less wide is in another unit
+constexpr double kCoarsestStep = 0.02;  // metres between numbers: as much as a scanner's noise
 constexpr double kLeastGroundPoints =
     0.02;  // of the points that are ground by class, to believe it
 

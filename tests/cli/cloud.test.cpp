@@ -7,7 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cloud_files.h"
 #include "las_files.h"
+#include "place/place.h"
 #include "program.h"
 
 using namespace colod;
@@ -177,4 +179,131 @@ TEST_CASE("of several clouds one that is a place is told of") {
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.err, Contains("block.las: looks like a scene: 4 buildings"));
   CHECK(report(folder)["buildings"].size() == 2);
+}
+
+namespace {
+
+/// Metres between where the tileset has the first building's origin and where the system puts it.
+double off_by(const TemporaryFolder& folder, const std::string& crs) {
+  const Json tileset = Json::parse(slurp(folder / "out" / "tileset.json"));
+  const Json& shift = tileset["asset"]["extras"]["offset"];
+  const Json origin = report(folder)["buildings"][0]["origin"];
+  Eigen::Matrix4d root;
+  for (int i = 0; i < 16; ++i) root(i) = tileset["root"]["transform"][static_cast<std::size_t>(i)];
+  Vec3 local, at;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    at[k] = origin[i];
+    local[k] = at[k] - shift[i].get<double>();
+  }
+  const Vec3 there = (root * local.homogeneous()).head<3>();
+  return (there - place_on_earth({crs, Vec3::Zero(), "test"}, at).to_ecef(at)).norm();
+}
+
+/// The same place in feet, by its offset and by each point.
+std::string in_feet(std::vector<LasPoint> points) {
+  constexpr double kFoot = 0.3048;
+  for (LasPoint& p : points) p.at /= kFoot;
+  std::string bytes = las(points, 2, 0);
+  for (int k = 0; k < 3; ++k)
+    set_at(bytes, 155 + 8 * static_cast<std::size_t>(k), kLasOffset[k] / kFoot);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("a cloud's own system places its tileset, to a centimetre; an option wins and is told") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "block.las").string();
+  const bool is_feet = GENERATE(false, true);
+  const LasRecord keys = geokeys({{3072, 32632}, {3076, is_feet ? 9002 : 9001}});
+  std::ofstream(path, std::ios::binary)
+      << with_records(is_feet ? in_feet(place_of(2)) : las(place_of(2), 2, 0), {keys});
+  const Ended own = build(folder, path);
+  INFO(own.err);
+  CHECK(own.exit_code == 0);
+  CHECK_THAT(own.err, Contains("placed on Earth: WGS 84 / UTM zone 32N, from " + path));
+  CHECK((own.err.find("read in foot") != std::string::npos) == is_feet);
+  CHECK(off_by(folder, "EPSG:32632") < 0.01);
+  CHECK(report(folder)["buildings"].size() == 4);
+  CHECK(report(folder)["buildings"][0]["layers"].back()["volume"] ==
+        Approx(10 * 12 * 6.5).epsilon(0.15));
+  const std::string tileset = slurp(folder / "out" / "tileset.json");
+  const Ended same = build(folder, path + " --crs EPSG:32632");
+  CHECK(same.err.find("m away from where") == std::string::npos);
+  CHECK(slurp(folder / "out" / "tileset.json") == tileset);
+  const Ended other = build(folder, path + " --crs EPSG:32633");
+  INFO(other.err);
+  CHECK(other.exit_code == 0);
+  CHECK_THAT(other.err, Contains("--crs is taken, which puts it") && Contains(path));
+  CHECK(off_by(folder, "EPSG:32633") < 0.01);
+}
+
+TEST_CASE("a cloud whose own system is of no use stays local, with one warning") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "block.las").string();
+  const auto [record, says] = GENERATE(
+      table<LasRecord, std::string>({{geokeys({{3072, 29999}}), "EPSG:29999"},
+                                     {geokeys({{1024, 2}, {2048, 4326}}), "is in degrees"}}));
+  std::ofstream(path, std::ios::binary) << las(place_of(2), 2, 0);
+  REQUIRE(build(folder, path).exit_code == 0);
+  const std::string tileset = slurp(folder / "out" / "tileset.json");
+  std::ofstream(path, std::ios::binary) << with_records(las(place_of(2), 2, 0), {record});
+  const Ended run = build(folder, path);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  const std::size_t at = run.err.find(says);
+  CHECK(at != std::string::npos);
+  CHECK(run.err.find(says, at + 1) == std::string::npos);
+  CHECK_THAT(run.err, Contains("the tileset stays local: use --crs and --origin"));
+  CHECK(slurp(folder / "out" / "tileset.json") == tileset);
+}
+
+TEST_CASE("a place is the same footprints and buildings from LAS, PLY and tables of points") {
+  const TemporaryFolder folder;
+  const bool has_kinds = GENERATE(true, false);
+  CAPTURE(has_kinds);
+  auto points = place_of(2);
+  if (!has_kinds)
+    for (LasPoint& p : points) p.kind = 1;
+  const auto built = [&](const std::string& name, const std::string& bytes) {
+    const std::string path = (folder / name).string();
+    std::ofstream(path, std::ios::binary) << bytes;
+    const Ended run = build(folder, path + " --context none");
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.err, Contains("taken for a scene, since 4 buildings stand apart"));
+    CHECK((run.err.find("the ground is found by its shape") == std::string::npos) == has_kinds);
+    return slurp(folder / "out" / "footprints.geojson");
+  };
+  const std::string expected = built("block.las", las(points, 2, 0));
+  const PlyCoding coding = has_kinds ? PlyCoding::kText : PlyCoding::kBig;
+  CHECK(built("points.ply", ply_of(points, coding, has_kinds)) == expected);
+  CHECK(built("rows.xyz", table_of(points, has_kinds, has_kinds ? "x y z class" : "")) == expected);
+  if (has_kinds) return;
+  const std::string single = (folder / "single.ply").string();  // half a metre coarse at 5,330 km
+  std::ofstream(single, std::ios::binary) << ply_of(points, PlyCoding::kLittle, false, "float");
+  const Ended run = build(folder, single + " --scene scene --context none");
+  CHECK_THAT(run.err, Contains("single.ply: its coordinates are of single precision"));
+}
+
+TEST_CASE("a cloud of one house in other formats is a building, and told of where it may be none") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "house.xyz").string();
+  std::ofstream(path) << table_of(place_of(1), false);
+  const Ended house = build(folder, path);
+  INFO(house.err);
+  CHECK(house.exit_code == 1);  // nothing tells its plot from it, which is told
+  CHECK_THAT(house.err, Contains("--scene scene takes it for a place"));
+  CHECK(house.err.find("taken for a scene") == std::string::npos);
+  const std::string block = (folder / "block.ply").string();
+  std::ofstream(block, std::ios::binary) << ply_of(place_of(2), PlyCoding::kBig, false);
+  const Ended two = build(folder, path + " " + block);
+  INFO(two.err);
+  CHECK(two.exit_code == 1);
+  CHECK_THAT(two.err, Contains("block.ply: looks like a scene: 4 buildings"));
+  std::ofstream(path) << "11.5001 48.1 5\n11.5002 48.1 5\n11.5003 48.1001 6\n11.5 48.1 7\n";
+  const Ended degrees = build(folder, path + " --scene scene");
+  CHECK(degrees.exit_code == 3);
+  CHECK_THAT(degrees.err, Contains("coordinates in degrees must be projected first"));
 }

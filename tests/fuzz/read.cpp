@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "read/airborne.h"
 
 namespace {
 
@@ -39,6 +40,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   try {
     for (const colod::Source& source : colod::read_sources({path}).sources) check(source);
+  } catch (const colod::Error&) {
+  }
+  try {
+    colod::read_cloud_system(path);
+    if (colod::is_cloud(path))
+      colod::AirborneCloud(path, {}).visit([](const colod::AirbornePoint& p) {
+        if (!p.at.allFinite()) std::abort();
+      });
   } catch (const colod::Error&) {
   }
   unlink(path.c_str());
