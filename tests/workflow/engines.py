@@ -33,8 +33,8 @@ def differences(one, other):
 class Slurm:
     """One node on the loopback address, with all its files in a folder of its own."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, folder, processors=os.cpu_count()):
+        self.folder, self.processors = folder, processors
 
     def __enter__(self):
         for name in ("state", "spool"):
@@ -65,7 +65,7 @@ ReturnToService=2
 SlurmctldPort=16827
 SlurmdPort=16828
 MpiDefault=none
-NodeName={host} NodeAddr=127.0.0.1 CPUs={os.cpu_count()} RealMemory=4000 State=UNKNOWN
+NodeName={host} NodeAddr=127.0.0.1 CPUs={self.processors} RealMemory=4000 State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """)
         self.environment = dict(os.environ, SLURM_CONF=str(f / "slurm.conf"))
