@@ -70,6 +70,20 @@ std::vector<std::vector<int>> edges_of(std::vector<std::vector<int>> near) {
   return edges;
 }
 
+/// S → D^-1/2 S D^-1/2 in its place; of both the lower half.
+void normalise(Sparse& s) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(s.cols());
+  for (Eigen::Index i = 0; i < s.cols(); ++i)
+    for (Sparse::InnerIterator e(s, i); e; ++e) {
+      sums[e.row()] += e.value();
+      if (e.row() != i) sums[i] += e.value();
+    }
+  const Eigen::VectorXd scale = sums.cwiseSqrt().cwiseInverse();
+  for (Eigen::Index i = 0; i < s.cols(); ++i)
+    for (Sparse::InnerIterator e(s, i); e; ++e)
+      e.valueRef() = scale[e.row()] * e.value() * scale[i];
+}
+
 /// The lower half with the diagonal, which is all that the product asks for.
 Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Similarity similarity) {
   const auto n = static_cast<Eigen::Index>(segments.size());
@@ -90,19 +104,11 @@ Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Simi
       [&](std::size_t i) {
         for (Sparse::InnerIterator e(s, static_cast<Eigen::Index>(i)); e; ++e)
           if (e.row() != e.col())
-            e.valueRef() = similarity(segments[i], segments[static_cast<std::size_t>(e.row())], eta);
+            e.valueRef() =
+                similarity(segments[i], segments[static_cast<std::size_t>(e.row())], eta);
       },
       32);
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Sparse::InnerIterator e(s, i); e; ++e) {
-      sums[e.row()] += e.value();
-      if (e.row() != i) sums[i] += e.value();
-    }
-  const Eigen::VectorXd scale = sums.cwiseSqrt().cwiseInverse();
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Sparse::InnerIterator e(s, i); e; ++e)
-      e.valueRef() = scale[e.row()] * e.value() * scale[i];
+  normalise(s);
   return s;
 }
 

@@ -92,7 +92,8 @@ double relative_gap(double bound, double value) {
 
 Solved solve_by_ascent(const Model& model, const SelectionOptions& options, double gap,
                        int starts) {
-  const int steps = static_cast<int>(std::clamp(kStepWork / work(model), double(kMinSteps), double(kMaxSteps)));
+  const int steps =
+      static_cast<int>(std::clamp(kStepWork / work(model), double(kMinSteps), double(kMaxSteps)));
   Choice x = best_ascent(model, options, starts);
   Bound bound = lagrangian_bound(model, x, steps, gap);
   if (bound.best != x) {

@@ -176,7 +176,8 @@ TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, once
       if (j != i) all.push_back(segment_similarity(segments[i], segments[j], 4));
     std::sort(all.rbegin(), all.rend());
     REQUIRE(near[i].size() == 20);
-    CHECK(std::adjacent_find(near[i].begin(), near[i].end(), std::greater_equal()) == near[i].end());
+    CHECK(std::adjacent_find(near[i].begin(), near[i].end(), std::greater_equal()) ==
+          near[i].end());
     for (const int n : near[i]) {
       CHECK(n != i);
       found += segment_similarity(segments[i], segments[n], 4) >= all[19] - 1e-12;
