@@ -23,6 +23,7 @@
 #include "pipeline_options.h"
 #include "plan/cell_lock.h"
 #include "plan_options.h"
+#include "publish/cells.h"
 #include "publish/report_pictures.h"
 #include "read/archive.h"
 #include "store/store.h"
@@ -235,50 +236,54 @@ int update(const StageArguments& a) {
   return 0;
 }
 
-/// One scene file's buildings; what went wrong is added to `problems`.
-void mesh_scene(Store& store, const Log& log, Scene& problems) {
+/// One scene file's buildings, each let go of when it is told what became of it.
+CellOutcome mesh_scene(Store& store, const Log& log) {
   store.check_rules();
   store.drop_damaged_meshes(warns(log));
   const Options options = store.options();
-  store.get_coanalysis(problems);
+  Scene facts;
+  store.get_coanalysis(facts);
   const std::vector<std::string> names = store.names();
   check_analysed(store, names);
   std::mutex mutex;
   int done = 0;
+  std::vector<CellOutcome> of_building(names.size());
   parallel_for(names.size(), [&](std::size_t i) {
     Building b;
+    bool is_there;
     {
       const std::lock_guard lock(mutex);
-      if (store.has_meshes(names[i])) return;
+      is_there = store.has_meshes(names[i]);
       b = store.building(names[i]);
     }
-    mesh_building(b, options);
+    if (!is_there) mesh_building(b, options);
+    of_building[i] = {tally_of(b), problems_of(b)};
+    if (is_there) return;
     const std::lock_guard lock(mutex);
     store.put_meshes(b);
     log.progress(names[i], "layers", ++done, static_cast<int>(names.size()));
   });
-  for (const std::string& name : names) {
-    problems.buildings.push_back(store.building(name));
-    drop_geometry(problems.buildings.back());
-  }
+  CellOutcome outcome;
+  for (CellOutcome& own : of_building) outcome += std::move(own);
+  return outcome;
 }
 
 int mesh(const StageArguments& a) {
   limit_threads(a.run.threads);
   const Log log = a.run.log();
-  Scene problems;
+  CellOutcome outcome;
   if (a.plan.path.empty()) {
-    for (Store& store : open_all(a.inputs)) mesh_scene(store, log, problems);
+    for (Store& store : open_all(a.inputs)) outcome += mesh_scene(store, log);
   } else {
     const Plan plan = read_plan(a.plan.path);
     for_own_cells(a.plan, plan, [&](std::size_t cell, const std::string& path) {
       check_whole(plan, a.plan.path, cell);
       Store store(path, false);
-      mesh_scene(store, log, problems);
+      outcome += mesh_scene(store, log);
     });
   }
-  log_problems(problems, log);
-  return exit_code(problems);
+  for (const Message& m : outcome.messages) log.message(m);
+  return exit_code(Scene{}, outcome.tally);
 }
 
 /// The sources of scenes that were read before, one at a time, so that memory stays flat.

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -91,12 +92,31 @@ Cloud embed(const std::vector<Descriptor>& segments, double eta, bool is_by_kind
   return cloud;
 }
 
+/// Of candidates the `count` most similar to i, ties by index; in rising order.
+std::vector<int> most_similar(const std::vector<Descriptor>& segments, std::size_t i,
+                              const std::vector<std::uint32_t>& candidates, int count, double eta,
+                              Similarity similarity) {
+  std::vector<std::pair<double, int>> near;  // −similarity, which
+  for (const std::uint32_t j : candidates) {
+    if (j == i) continue;
+    const std::size_t a = std::min<std::size_t>(i, j), b = std::max<std::size_t>(i, j);
+    const double s = similarity(segments[a], segments[b], eta);
+    if (std::isfinite(s)) near.emplace_back(-s, static_cast<int>(j));
+  }
+  std::sort(near.begin(), near.end());
+  if (std::ssize(near) > count) near.resize(count);
+  std::vector<int> which;
+  which.reserve(near.size());
+  for (const auto& [distance, j] : near) which.push_back(j);
+  std::sort(which.begin(), which.end());
+  return which;
+}
+
 }  // namespace
 
-std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descriptor>& segments,
-                                                       int count, double eta,
-                                                       Similarity similarity) {
-  std::vector<std::vector<Neighbour>> result(segments.size());
+std::vector<std::vector<int>> nearest_neighbours(const std::vector<Descriptor>& segments, int count,
+                                                 double eta, Similarity similarity) {
+  std::vector<std::vector<int>> result(segments.size());
   if (segments.size() < 2) return result;
   const Cloud cloud = embed(segments, eta, similarity == kind_similarity);
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>,
@@ -110,18 +130,7 @@ std::vector<std::vector<Neighbour>> nearest_neighbours(const std::vector<Descrip
         std::vector<std::uint32_t> found(wanted);
         std::vector<double> squared(wanted);
         found.resize(tree.knnSearch(cloud.points[i].data(), wanted, found.data(), squared.data()));
-        std::vector<Neighbour>& near = result[i];
-        for (const std::uint32_t j : found) {
-          if (j == i) continue;
-          const std::size_t a = std::min<std::size_t>(i, j), b = std::max<std::size_t>(i, j);
-          const double s = similarity(segments[a], segments[b], eta);
-          if (std::isfinite(s)) near.push_back({static_cast<int>(j), s});
-        }
-        std::sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {
-          return a.similarity != b.similarity ? a.similarity > b.similarity : a.index < b.index;
-        });
-        if (near.size() > static_cast<std::size_t>(count)) near.resize(count);
-        near.shrink_to_fit();
+        result[i] = most_similar(segments, i, found, count, eta, similarity);
       },
       32);
   return result;

@@ -46,52 +46,69 @@ Eigen::MatrixXd dense_affinity(const std::vector<Descriptor>& segments, double e
     }
   });
   const Eigen::VectorXd scale = a.colwise().sum().cwiseSqrt().cwiseInverse();  // sums are ≥ 1
-  return scale.asDiagonal() * a * scale.asDiagonal();
+  for (Eigen::Index j = 0; j < n; ++j) a.col(j) = scale.cwiseProduct(a.col(j)) * scale[j];
+  return a;  // in place: a second one would be as large
 }
 
-using Columns = std::vector<std::vector<Neighbour>>;
-
-bool is_before(const Neighbour& a, const Neighbour& b) { return a.index < b.index; }
-
-// An edge counts when either end names the other: each column gets those that name it and that it
-// does not name, behind its own. Columns are sorted by index.
-void add_reverse_edges(Columns& columns) {
-  std::vector<std::size_t> own(columns.size());
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    std::sort(columns[i].begin(), columns[i].end(), is_before);
-    own[i] = columns[i].size();
-  }
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    for (std::size_t e = 0; e < own[i]; ++e) {
-      const Neighbour edge = columns[i][e], back{static_cast<int>(i), edge.similarity};
-      std::vector<Neighbour>& other = columns[edge.index];
-      const auto end = other.begin() + static_cast<std::ptrdiff_t>(own[edge.index]);
-      if (!std::binary_search(other.begin(), end, back, is_before)) other.push_back(back);
+/// Per segment those behind it that it names or that name it, rising: an edge counts when either
+/// end names the other, and stands with the first of both.
+std::vector<std::vector<int>> edges_of(std::vector<std::vector<int>> near) {
+  std::vector<std::vector<int>> edges(near.size());
+  const auto names = [&](std::size_t i, std::size_t j) {
+    return std::binary_search(near[i].begin(), near[i].end(), static_cast<int>(j));
+  };
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (const int named : near[i]) {
+      const auto j = static_cast<std::size_t>(named);
+      if (i < j)
+        edges[i].push_back(named);
+      else if (!names(j, i))
+        edges[j].push_back(static_cast<int>(i));
     }
-  for (std::vector<Neighbour>& column : columns) std::sort(column.begin(), column.end(), is_before);
+  near = {};
+  for (std::vector<int>& own : edges) std::sort(own.begin(), own.end());
+  return edges;
 }
 
-// Column by column, each let go of when it is in: at no time is all there twice.
+/// S → D^-1/2 S D^-1/2 in its place; of both the lower half.
+void normalise(Sparse& s) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(s.cols());
+  for (Eigen::Index i = 0; i < s.cols(); ++i)
+    for (Sparse::InnerIterator e(s, i); e; ++e) {
+      sums[e.row()] += e.value();
+      if (e.row() != i) sums[i] += e.value();
+    }
+  const Eigen::VectorXd scale = sums.cwiseSqrt().cwiseInverse();
+  for (Eigen::Index i = 0; i < s.cols(); ++i)
+    for (Sparse::InnerIterator e(s, i); e; ++e)
+      e.valueRef() = scale[e.row()] * e.value() * scale[i];
+}
+
+/// The lower half with the diagonal, which is all that the product asks for.
 Sparse sparse_affinity(const std::vector<Descriptor>& segments, double eta, Similarity similarity) {
   const auto n = static_cast<Eigen::Index>(segments.size());
-  Columns columns = nearest_neighbours(segments, kNeighbours, eta, similarity);
-  add_reverse_edges(columns);
+  std::vector<std::vector<int>> edges =
+      edges_of(nearest_neighbours(segments, kNeighbours, eta, similarity));
   Eigen::Index entries = n;
-  for (const std::vector<Neighbour>& column : columns) entries += std::ssize(column);
+  for (const std::vector<int>& own : edges) entries += std::ssize(own);
   Sparse s(n, n);
   s.reserve(entries);
   for (Eigen::Index i = 0; i < n; ++i) {
-    std::vector<Neighbour> column = std::exchange(columns[static_cast<std::size_t>(i)], {});
-    const Neighbour self{static_cast<int>(i), 1.0};
-    column.insert(std::lower_bound(column.begin(), column.end(), self, is_before), self);
     s.startVec(i);
-    for (const Neighbour& near : column) s.insertBack(near.index, i) = near.similarity;
+    s.insertBack(i, i) = 1;
+    for (const int j : std::exchange(edges[static_cast<std::size_t>(i)], {})) s.insertBack(j, i);
   }
   s.finalize();
-  const Eigen::VectorXd scale = (s * Eigen::VectorXd::Ones(n)).cwiseSqrt().cwiseInverse();
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Sparse::InnerIterator entry(s, i); entry; ++entry)
-      entry.valueRef() = scale[entry.row()] * entry.value() * scale[i];
+  parallel_for(
+      segments.size(),
+      [&](std::size_t i) {
+        for (Sparse::InnerIterator e(s, static_cast<Eigen::Index>(i)); e; ++e)
+          if (e.row() != e.col())
+            e.valueRef() =
+                similarity(segments[i], segments[static_cast<std::size_t>(e.row())], eta);
+      },
+      32);
+  normalise(s);
   return s;
 }
 

@@ -43,6 +43,7 @@ using namespace parameters::coanalysis;
 
 constexpr double kOptimalGap = 1e-7;  // of the objective: less is rounding
 constexpr int kMaxSteps = 400;        // of the bound
+constexpr int kMinSteps = 30;         // what more bring is under 0.1 % of E_0
 constexpr double kStepWork = 4e9;     // items × prototypes looked at by all steps together
 constexpr double kStartWork = 5e6;    // by all starts together, but 3 there are
 constexpr double kPolishWork = 2e8;   // nodes × items × prototypes in a round
@@ -91,7 +92,8 @@ double relative_gap(double bound, double value) {
 
 Solved solve_by_ascent(const Model& model, const SelectionOptions& options, double gap,
                        int starts) {
-  const int steps = static_cast<int>(std::clamp(kStepWork / work(model), 10.0, double(kMaxSteps)));
+  const int steps =
+      static_cast<int>(std::clamp(kStepWork / work(model), double(kMinSteps), double(kMaxSteps)));
   Choice x = best_ascent(model, options, starts);
   Bound bound = lagrangian_bound(model, x, steps, gap);
   if (bound.best != x) {

@@ -5,6 +5,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <memory>
@@ -26,10 +27,14 @@ void parallel_ranges(std::size_t n, std::size_t grain,
     return;
   }
   // Isolated: a thread that waits for an inner loop must not start another building of an outer
-  // one, which would keep more of them in memory than there are threads.
+  // one, which would keep more of them in memory than there are threads. A context of its own: an
+  // exception elsewhere in an outer loop would end this one early without a word, and its caller
+  // would take what it has not done for done.
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, grain),
+        [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); }, context);
   });
 }
 

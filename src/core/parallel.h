@@ -8,8 +8,8 @@
 namespace colod {
 
 /// Runs body(i) for i in [0, n), in any order, on the threads allowed by limit_threads. Nested
-/// calls share the same pool. The first exception thrown by a body is rethrown. `grain`: iterations
-/// a task takes at least.
+/// calls share the same pool. The first exception of a body is rethrown; loops within bodies that
+/// still run are run to their ends. `grain`: iterations a task takes at least.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 

@@ -183,6 +183,24 @@ std::vector<std::vector<std::size_t>> positions_by_name(const Inventory& invento
   return positions;
 }
 
+/// Descriptors and coverage are lent for the time: a city's would be large twice.
+void choose_layer0(Scene& scene, const Options& options, const Prior* prior) {
+  std::vector<SelectionBuilding> lent;
+  for (Building& b : scene.buildings)
+    lent.push_back({std::move(b.descriptors), std::move(b.segments.coverage)});
+  scene.selection = select_layer0(lent, {.rules = options.rules,
+                                         .beta = options.beta,
+                                         .lambda = options.lambda,
+                                         .eta = options.eta,
+                                         .seed = options.seed,
+                                         .gap = options.gap,
+                                         .prior = prior});
+  for (std::size_t i = 0; i < lent.size(); ++i) {
+    scene.buildings[i].descriptors = std::move(lent[i].segments);
+    scene.buildings[i].segments.coverage = std::move(lent[i].coverage);
+  }
+}
+
 }  // namespace
 
 const char* to_string(StandIn reason) {
@@ -274,15 +292,7 @@ void analyze_scene(Scene& scene, const Options& options, const Prior* prior) {
                 "it has " + std::to_string(prior->layers) + " layers, not " +
                     std::to_string(options.layers));
   scene.has_prior = prior != nullptr;
-  std::vector<SelectionBuilding> input;
-  for (const Building& b : scene.buildings) input.push_back({b.descriptors, b.segments.coverage});
-  scene.selection = select_layer0(input, {.rules = options.rules,
-                                          .beta = options.beta,
-                                          .lambda = options.lambda,
-                                          .eta = options.eta,
-                                          .seed = options.seed,
-                                          .gap = options.gap,
-                                          .prior = prior});
+  choose_layer0(scene, options, prior);
   scene.overruled.clear();
   for (const Overruled& o : scene.selection.overruled) {
     const Building& b = scene.buildings[o.building];

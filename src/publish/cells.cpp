@@ -113,6 +113,12 @@ class CellExporter {
 
 }  // namespace
 
+CellOutcome& CellOutcome::operator+=(CellOutcome other) {
+  tally += other.tally;
+  for (Message& m : other.messages) messages.push_back(std::move(m));
+  return *this;
+}
+
 std::string CellScene::stamp() const {
   std::ostringstream text;
   text << std::setprecision(17) << COLOD_VERSION << ' ' << scene.has_prior;
@@ -144,7 +150,7 @@ CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& s
   for (const CellBuilding& b : tasks.buildings) names.push_back(b.name);
   shelf.keep_only(names);
   CellExporter exporter(cells, tasks);
-  std::vector<CellRecord> records(names.size());
+  std::vector<CellOutcome> of_building(names.size());
   std::mutex mutex;
   parallel_for(names.size(), [&](std::size_t i) {
     std::string facts, damage;
@@ -165,15 +171,11 @@ CellOutcome export_cell(const CellScene& cells, const CellTasks& tasks, Shelf& s
     const std::lock_guard lock(mutex);
     if (!damage.empty()) tasks.tell({Level::kWarning, damage});
     if (!is_there) shelf.put(names[i], exported.pieces);
-    records[i].tally = exported.record.tally;
-    records[i].messages = std::move(exported.record.messages);
+    of_building[i] = {exported.record.tally, std::move(exported.record.messages)};
     tasks.progress(names[i], !is_there);
   });
   CellOutcome outcome;
-  for (CellRecord& r : records) {
-    outcome.tally += r.tally;
-    for (Message& m : r.messages) outcome.messages.push_back(std::move(m));
-  }
+  for (CellOutcome& own : of_building) outcome += std::move(own);
   return outcome;
 }
 

@@ -63,6 +63,8 @@ struct CellTasks {
 struct CellOutcome {
   Tally tally;
   std::vector<Message> messages;
+
+  CellOutcome& operator+=(CellOutcome other);
 };
 CellOutcome export_cell(const CellScene& scene, const CellTasks& tasks, Shelf& shelf);
 

@@ -127,6 +127,8 @@ struct Database {
   void open(int flags);
   /// To read and write what is there.
   void open_existing();
+  /// Keeps few pages in memory: for a file of which each place is read once, beside many others.
+  void keep_few_pages() const;
   /// Whether the last call failed since the file is no whole database.
   bool is_damaged() const;
   /// Whether all its pages and keys are as they must be; what rows hold may be anything.

@@ -55,6 +55,7 @@ struct Shelf::Impl : Database {
 Shelf::Shelf(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   impl_->open(SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0));
+  impl_->keep_few_pages();
   switch (impl_->content()) {
     case Content::kShelf:
       return;

@@ -137,6 +137,10 @@ void Database::open(int flags) {
 
 void Database::open_existing() { open(SQLITE_OPEN_READWRITE); }
 
+/// SQLite's own bound is 2 MB a file: as much again as the rest of a step where a city's cells are
+/// open together. The pages on the way to a row, and a large row's own, find room in 256 KiB.
+void Database::keep_few_pages() const { execute("PRAGMA cache_size = -256", Stage::kInput); }
+
 bool Database::is_damaged() const {
   const int code = sqlite3_errcode(db);
   return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;

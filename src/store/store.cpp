@@ -82,6 +82,7 @@ bool Store::Impl::is_of_its_kind() const {
 Store::Store(const std::string& path, bool is_new_allowed) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   impl_->open(SQLITE_OPEN_READWRITE | (is_new_allowed ? SQLITE_OPEN_CREATE : 0));
+  if (!is_new_allowed) impl_->keep_few_pages();
   impl_->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", Stage::kInput);
   Statement version = impl_->read("PRAGMA user_version");
   version.step();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <functional>
 #include <random>
 
 #include "coanalysis/clustering_neighbours.h"
@@ -163,7 +164,7 @@ TEST_CASE("beyond the dense limit nearest neighbours keep the kinds") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, similarities exact") {
+TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, once each") {
   std::mt19937_64 random(5);
   std::vector<Descriptor> segments;
   for (int i = 0; i < 600; ++i) segments.push_back(random_descriptor(i % 6, random));
@@ -175,10 +176,11 @@ TEST_CASE("nearest neighbours: nearly those that comparing all pairs finds, simi
       if (j != i) all.push_back(segment_similarity(segments[i], segments[j], 4));
     std::sort(all.rbegin(), all.rend());
     REQUIRE(near[i].size() == 20);
-    for (const Neighbour& n : near[i]) {
-      CHECK(n.index != i);
-      CHECK(n.similarity == Approx(segment_similarity(segments[i], segments[n.index], 4)));
-      found += n.similarity >= all[19] - 1e-12;
+    CHECK(std::adjacent_find(near[i].begin(), near[i].end(), std::greater_equal()) ==
+          near[i].end());
+    for (const int n : near[i]) {
+      CHECK(n != i);
+      found += segment_similarity(segments[i], segments[n], 4) >= all[19] - 1e-12;
     }
   }
   CHECK(found > 0.7 * 600 * 20);
