@@ -151,6 +151,7 @@ constexpr double kWhole = 0.7;         // … that are the building's along this
 constexpr double kNarrowest = 4;       // metres between two walls
 constexpr double kBeyond = 1.5;        // cells that a wall goes on at both ends
 constexpr double kLeastRowHouse = 30;  // m²
+constexpr double kLeastBlock = 150;    // m²: what is smaller is one house more often than two
 constexpr int kJoinRounds = 10;
 
 }  // namespace colod::parameters::party_walls

@@ -123,7 +123,7 @@ ClosedSides party_walls_of(const HeightMap& map, const SceneClasses& classes) {
   const auto borders = borders_of(map, classes.building, classes.buildings);
   for (std::size_t b = 0; b < cells.size(); ++b) {
     const double area = static_cast<double>(cells[b].size()) * map.cell * map.cell;
-    if (area < 2 * kLeastRowHouse) continue;
+    if (area < kLeastBlock) continue;
     const auto longest = std::max_element(borders[b].begin(), borders[b].end(),
                                           [](auto& u, auto& v) { return u.size() < v.size(); });
     const Ring ring = with_fewer_corners(map, *longest);
