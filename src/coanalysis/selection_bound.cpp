@@ -58,10 +58,12 @@ class Relaxation {
         n_(model.prototypes),
         nu_(model.items.size()),
         own_take_(model.items.size(), 0.0),
-        who_(blocks() * n_, -1),
+        who_(blocks()),
         all_(n_, 0.0),
         dropped_(n_, 0.0) {
     for (const Item& item : model.items) all_[item.prototype] += item.weight_high;
+    for (std::size_t i = 0; i < blocks(); ++i)
+      if (model.blocks[i].count > 0) who_[i].assign(n_, -1);
   }
 
   // L(ν) with the constants; fills x and y.
@@ -95,7 +97,7 @@ class Relaxation {
         blocks(),
         [&](std::size_t i) {
           const Derivative d = derivative(i, 1);
-          const int* who = who_.data() + i * n_;
+          const std::vector<int>& who = who_[i];
           std::vector<float> nu(n_, 0.0f);
           for (int t = first(i); t < end(i); ++t) {
             const float own = x_[t] ? 1.0f : 0.0f;
@@ -121,7 +123,7 @@ class Relaxation {
         blocks(),
         [&](std::size_t i) {
           const Derivative d = derivative(i, length);
-          const int* who = who_.data() + i * n_;
+          const std::vector<int>& who = who_[i];
           std::vector<float> nu(n_, 0.0f);
           for (int t = first(i); t < end(i); ++t) {
             const float own = x_[t] ? 1.0f : 0.0f;
@@ -203,9 +205,9 @@ class Relaxation {
 
   // What block j gives to each prototype, and which of its items does.
   void take(std::size_t j, double* best) {
-    int* who = who_.data() + j * n_;
+    std::vector<int>& who = who_[j];
     std::fill(best, best + n_, 0.0);
-    std::fill(who, who + n_, -1);
+    std::fill(who.begin(), who.end(), -1);
     std::vector<float> room, nu(n_, 0.0f);
     const float* sim = model_.rows_high(model_.blocks[j], room);
     for (int t = first(j); t < end(j); ++t, sim += n_) {
@@ -251,7 +253,7 @@ class Relaxation {
   std::size_t n_;                            // prototypes
   std::vector<std::vector<Multiplier>> nu_;  // per item those that are not 0, by prototype
   std::vector<double> own_take_;             // per item: what its own block gives to its prototype
-  std::vector<int> who_;                     // [block][prototype]
+  std::vector<std::vector<int>> who_;        // [block][prototype]; of a block without items empty
   std::vector<double> all_;                  // per prototype: weights of its items
   std::vector<double> dropped_;              // of those that are dropped
   Choice x_;
