@@ -4,7 +4,6 @@
 #include "files.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -67,26 +66,17 @@ bool is_in(const std::string& extension, const char* const (&list)[N]) {
 
 std::string ending_of(const fs::path& path) { return lower(path.extension().string()); }
 
-/// The first bytes of a regular file; empty where it cannot be read.
-std::string head(const fs::path& path) {
-  std::array<char, 4096> bytes;
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  return std::string(bytes.data(), static_cast<std::size_t>(file.gcount()));
-}
+constexpr std::size_t kHead = 4096;  // bytes that tell what a file is
 
 bool is_report(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error) && head(path).find("\"colod\":") != std::string::npos;
+  return file_head(path, kHead).find("\"colod\":") != std::string::npos;
 }
 
 /// A folder of levels for engines, wherever it was copied to: by what its list says of itself.
 bool is_engine_export(const fs::path& folder) {
-  std::error_code error;
-  const fs::path list = folder / "lods.json";
-  return fs::is_regular_file(list, error) &&
-         head(list).find("LOD0 is the finest. A level is shown from switch_distance") !=
-             std::string::npos;
+  return file_head(folder / "lods.json", kHead)
+             .find("LOD0 is the finest. A level is shown from switch_distance") !=
+         std::string::npos;
 }
 
 /// A folder of buildings, tiles or engine files that colod build wrote.
@@ -219,7 +209,7 @@ bool is_passed_over(const fs::path& path) {
   if (name.starts_with("._") || name.ends_with("_offset.xyz")) return true;
   std::error_code error;
   return is_in(ending_of(path), kTables) && fs::is_regular_file(path, error) &&
-         !is_point_table(as_text(head(path)));
+         !is_point_table(as_text(file_head(path, kHead)));
 }
 
 std::string lower(std::string s) {
@@ -242,7 +232,7 @@ std::string foreign_advice(const fs::path& path) {
     }
   std::error_code error;
   if (e == ".json" && fs::is_regular_file(path, error) &&
-      head(path).find("\"CityJSON\"") != std::string::npos)
+      file_head(path, kHead).find("\"CityJSON\"") != std::string::npos)
     return "CityJSON is not read: `cjio IN.json export obj OUT.obj` converts it";
   return "";
 }
@@ -261,6 +251,16 @@ InputList list_files(const std::vector<std::string>& inputs, bool is_recursive) 
   }
   keep_each_once(list);
   return list;
+}
+
+std::string file_head(const fs::path& path, std::size_t bytes) {
+  std::string head(bytes, '\0');
+  std::error_code error;
+  std::ifstream file;
+  if (fs::is_regular_file(path, error)) file.open(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(bytes));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 std::string read_bytes(const std::string& path, double input_memory) {

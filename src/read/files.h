@@ -30,6 +30,9 @@ struct InputList {
 /// nothing to read.
 InputList list_files(const std::vector<std::string>& inputs, bool is_recursive);
 
+/// The first bytes of a regular file, fewer where it ends; empty for anything else.
+std::string file_head(const std::filesystem::path& path, std::size_t bytes);
+
 /// A regular file of at most `input_memory` MiB, which is checked before anything is read. Throws
 /// Error{kInput} for anything else, such as pipes, devices and links that lead to themselves.
 std::string read_bytes(const std::string& path, double input_memory);

@@ -1,10 +1,9 @@
 // Based on: Greg Turk, The PLY Polygon File Format, 1994.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "blocks.h"
+#include "files.h"
 #include "ply_file.h"
 #include "streams.h"
 
@@ -14,16 +13,6 @@ namespace {
 
 constexpr std::size_t kPlyHead = std::size_t{1} << 16;  // bytes: headers have some hundreds
 constexpr double kFullByte = 255;
-
-std::string ply_head(const std::string& path) {
-  std::string head(kPlyHead, '\0');
-  std::error_code error;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(path, error)) in.open(path, std::ios::binary);
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return head;
-}
 
 /// The vertices of a file, whatever stands before them passed over.
 void visit_ply(const std::string& path, const PlyHeader& header,
@@ -58,7 +47,7 @@ const PlyElement* vertices_of(const PlyHeader& header) {
 
 bool is_ply_cloud(const std::string& path) {
   try {
-    const PlyHeader header = read_ply_header(path, ply_head(path));
+    const PlyHeader header = read_ply_header(path, file_head(path, kPlyHead));
     for (const PlyElement& element : header.elements)
       if ((element.name == "face" || element.name == "tristrips") && element.count > 0)
         return false;
@@ -69,7 +58,7 @@ bool is_ply_cloud(const std::string& path) {
 }
 
 PointStream stream_ply(const std::string& path, const ReadOptions& options) {
-  const PlyHeader header = read_ply_header(path, ply_head(path));
+  const PlyHeader header = read_ply_header(path, file_head(path, kPlyHead));
   const PlyElement* vertices = vertices_of(header);
   if (!vertices) fail(path, "the header names no element `vertex`");
   PointStream out;

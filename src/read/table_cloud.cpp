@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "blocks.h"
 #include "files.h"
@@ -15,16 +14,6 @@ namespace {
 
 constexpr std::size_t kTableHead = 4096;  // bytes: twenty rows and more
 
-std::string table_head(const std::string& path) {
-  std::string head(kTableHead, '\0');
-  std::error_code error;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(path, error)) in.open(path, std::ios::binary);
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return head;
-}
-
 /// A table that is read as often as asked for.
 struct TableFile {
   std::string path;
@@ -34,7 +23,7 @@ struct TableFile {
 
   TableFile(const std::string& file, const ReadOptions& options)
       : path(file), is_pwn(lower(std::filesystem::path(file).extension().string()) == ".pwn") {
-    const std::string head = table_head(path);
+    const std::string head = file_head(path, kTableHead);
     if (head.starts_with("\xEF\xBB\xBF")) begin = 3;
     if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF"))
       text = as_text(read_bytes(path, options.input_memory));
@@ -77,7 +66,9 @@ struct TableColors {
 
 }  // namespace
 
-bool is_table_file(const std::string& path) { return is_point_table(as_text(table_head(path))); }
+bool is_table_file(const std::string& path) {
+  return is_point_table(as_text(file_head(path, kTableHead)));
+}
 
 PointStream stream_table(const std::string& path, const ReadOptions& options) {
   const TableFile file(path, options);
