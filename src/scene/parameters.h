@@ -126,8 +126,9 @@ constexpr int kRimRounds = 5;         // cells at its height that a roof takes i
 constexpr int kWallRounds = 2;        // cells that melted walls are wide, and halves of parapets
 constexpr double kAmid = 0.6;         // of what is rough that buildings are around
 constexpr int kRounds = 10;
-constexpr double kLeastBuilding = 8;                   // m²: sheds
-constexpr double kHouseWidth = 2.2, kShedWidth = 1.7;  // metres: banks and fences are long, …
+constexpr double kLeastBuilding = 8;  // m²: sheds
+// Metres; squares have an odd number of cells, so that at 0.4 m these are 2.8 and 2.0 wide.
+constexpr double kHouseWidth = 2.2, kShedWidth = 1.7;  // banks and fences are long, …
 constexpr double kLargestShed = 30;                    // m²: … and sheds are not
 constexpr double kHeightShare = 0.7;                   // of a roof's cells …
 constexpr double kLeastHeight = 2.2;                   // … at least so high
