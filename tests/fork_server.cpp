@@ -1,10 +1,12 @@
-// Preloaded into a program (LD_PRELOAD), this starts it again and again from a process in which all libraries are loaded already:
-// for each request on the standard input a child runs main with other arguments. scripts/mutate runs colod hundreds of thousands of
-// times, and loading its libraries takes longer than what it does with a small file.
+// Preloaded into a program (LD_PRELOAD), this starts it again and again from a process in which all
+// libraries are loaded already: for each request on the standard input a child runs main with other
+// arguments. scripts/mutate runs colod hundreds of thousands of times, and loading its libraries
+// takes longer than what it does with a small file.
 //
-// A request: the number of bytes that follow (four, little end first), then strings that end with a zero byte: the folder to run
-// in, the file for the standard error, the seconds after which the child is killed, the arguments. The answer, a line on the standard
-// output: the status as waitpid gives it, processor seconds, peak memory [KiB], seconds by the clock.
+// A request: the number of bytes that follow (four, little end first), then strings that end with a
+// zero byte: the folder to run in, the file for the standard error, the seconds after which the
+// child is killed, the arguments. The answer, a line on the standard output: the status as waitpid
+// gives it, processor seconds, peak memory [KiB], seconds by the clock.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -25,7 +27,8 @@ namespace {
 using Main = int (*)(int, char**, char**);
 Main program = nullptr;
 
-constexpr rlim_t kAddressSpace = rlim_t{8} << 30;  // [bytes], so that a bomb ends its own process and not the machine
+constexpr rlim_t kAddressSpace =
+    rlim_t{8} << 30;  // [bytes], so that a bomb ends its own process and not the machine
 
 bool read_all(char* to, std::size_t size) {
   while (size > 0) {
@@ -44,7 +47,8 @@ std::vector<std::string> next_request() {
   std::string bytes(size, '\0');
   if (!read_all(bytes.data(), size)) return {};
   std::vector<std::string> strings;
-  for (std::size_t at = 0; at < bytes.size(); at += strings.back().size() + 1) strings.emplace_back(bytes.c_str() + at);
+  for (std::size_t at = 0; at < bytes.size(); at += strings.back().size() + 1)
+    strings.emplace_back(bytes.c_str() + at);
   return strings;
 }
 
@@ -77,9 +81,12 @@ void wait_for(pid_t child, long seconds, const sigset_t& ended) {
   wait4(child, &status, 0, &usage);
   const timespec none{0, 0};
   sigtimedwait(&ended, nullptr, &none);  // the signal of a child that was killed
-  const auto in_seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+  const auto in_seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
   const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
-  std::printf("%d %.3f %ld %.3f\n", status, in_seconds(usage.ru_utime) + in_seconds(usage.ru_stime), usage.ru_maxrss, waited.count());
+  std::printf("%d %.3f %ld %.3f\n", status, in_seconds(usage.ru_utime) + in_seconds(usage.ru_stime),
+              usage.ru_maxrss, waited.count());
   std::fflush(stdout);
 }
 
@@ -103,8 +110,10 @@ int serve(int, char** arguments, char** environment) {
 
 }  // namespace
 
-/// Takes the place of the C library's function, which a program's first instructions call with its main.
-extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*init)(), void (*fini)(), void (*loader_fini)(), void* stack) {
+/// Takes the place of the C library's function, which a program's first instructions call with its
+/// main.
+extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*init)(),
+                                 void (*fini)(), void (*loader_fini)(), void* stack) {
   using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
   program = main;
   const auto start = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));

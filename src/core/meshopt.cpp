@@ -107,6 +107,18 @@ void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
     if (remap[v] != ~0u) order[remap[v]] = v;
 }
 
+std::vector<std::uint32_t> order_in_space(const std::vector<Vec3>& points) {
+  const Vec3 center = bounding_box(points).center();
+  std::vector<float> positions;
+  positions.reserve(3 * points.size());
+  for (const Vec3& p : points)
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - center[k]));
+  std::vector<std::uint32_t> place(points.size()), order(points.size());
+  meshopt_spatialSortRemap(place.data(), positions.data(), points.size(), 3 * sizeof(float));
+  for (std::uint32_t i = 0; i < place.size(); ++i) order[place[i]] = i;
+  return order;
+}
+
 std::string encode_meshopt_indices(const std::vector<std::uint32_t>& indices,
                                    std::size_t vertices) {
   static const bool has_version = (meshopt_encodeIndexVersion(1), true);  // the extension's

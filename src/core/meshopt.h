@@ -1,4 +1,5 @@
-// The only door to meshoptimizer: EXT_meshopt_compression's payloads, and quadric collapse.
+// The only door to meshoptimizer: EXT_meshopt_compression's payloads, orders, and quadric
+// collapse.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,10 @@ std::vector<Face> faces_of(const std::vector<std::uint32_t>& indices);
 /// vertex. `indices` hold the new numbers.
 void optimize_order(std::vector<std::uint32_t>& indices, std::size_t vertices,
                     std::vector<std::uint32_t>& order);
+
+/// The points' numbers in an order in which those that follow one another mostly lie near one
+/// another (Morton's).
+std::vector<std::uint32_t> order_in_space(const std::vector<Vec3>& points);
 
 /// Collapses edges until `count` indices are left, or as few as the shape's topology allows,
 /// however far that is from the shape. `positions`: three numbers a vertex; vertices stay where

@@ -111,6 +111,35 @@ struct QueryContext {
   std::vector<std::pair<float, unsigned>>* all = nullptr;  ///< every hit, instead of the first
 };
 
+/// A search for the nearest triangle as far as it has come.
+struct NearestQuery {
+  const Vec3* corners;  ///< three a triangle
+  Vec3 query;
+  double margin;  ///< what single precision may hide
+  double best = kInfinity;
+  unsigned triangle = 0;
+  Vec3 point = Vec3::Zero();
+
+  /// Whether the triangle's box is farther away than the best triangle, for certain.
+  bool is_beyond(const Vec3* c) const {
+    constexpr double kRounding = 1 + 1e-12;
+    const Vec3 low = c[0].cwiseMin(c[1]).cwiseMin(c[2]), high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    const Vec3 apart = (low - query).cwiseMax(query - high).cwiseMax(0);
+    return apart.squaredNorm() > kRounding * best * best;
+  }
+
+  /// Whether the triangle is nearer than the best one, or as near and the lower of both.
+  bool improve(unsigned candidate) {
+    const Vec3* c = corners + 3 * static_cast<std::size_t>(candidate);
+    if (is_beyond(c)) return false;
+    const Vec3 nearest = nearest_on_triangle(query, c[0], c[1], c[2]);
+    const double distance = (nearest - query).norm();
+    if (distance > best || (distance == best && candidate > triangle)) return false;
+    best = distance, triangle = candidate, point = nearest;
+    return true;
+  }
+};
+
 /// Accepts the nearest hit, the lower triangle at equal distance; or collects and accepts none.
 void filter_hit(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
@@ -153,6 +182,14 @@ struct RayScene::Impl {
     const Vec3* c = &corners[3 * static_cast<std::size_t>(triangle)];
     const bool is_inside = (c[1] - c[0]).cross(c[2] - c[0]).dot(direction) > 0;
     return {original[triangle], distance, is_inside};
+  }
+  NearestQuery query_at(const Vec3& place) const {
+    const Vec3 local = place - center;
+    return {corners.data(), local, kRelativeError * (local.norm() + scale)};
+  }
+  NearestPoint answer(const NearestQuery& q) const {
+    if (q.best == kInfinity) return {};
+    return {original[q.triangle], q.best, q.point + center};
   }
 };
 
@@ -272,36 +309,17 @@ std::vector<RayHit> RayScene::all_hits(const Vec3& origin, const Vec3& direction
 
 namespace {
 
-struct NearestQuery {
-  const std::vector<Vec3>* corners;
-  Vec3 query;
-  double margin;  ///< what single precision may hide
-  double best = kInfinity;
-  unsigned triangle = 0;
-  Vec3 point = Vec3::Zero();
-};
-
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   auto* q = static_cast<NearestQuery*>(args->userPtr);
-  const Vec3* c = &(*q->corners)[3 * static_cast<std::size_t>(args->primID)];
-  const Vec3 point = nearest_on_triangle(q->query, c[0], c[1], c[2]);
-  const double distance = (point - q->query).norm();
-  if (distance > q->best || (distance == q->best && args->primID > q->triangle)) return false;
-  q->best = distance;
-  q->triangle = args->primID;
-  q->point = point;
-  const float radius = static_cast<float>(distance + q->margin);
+  if (!q->improve(args->primID)) return false;
+  const float radius = static_cast<float>(q->best + q->margin);
   if (radius >= args->query->radius) return false;
   args->query->radius = radius;
   return true;
 }
 
-}  // namespace
-
-NearestPoint RayScene::nearest(const Vec3& query, double within) const {
-  if (!impl_->scene || !query.allFinite()) return {};
-  NearestQuery q{&impl_->corners, query - impl_->center, 0};
-  q.margin = kRelativeError * (q.query.norm() + impl_->scale);
+/// Looks at all triangles that may be nearer than `within`.
+void search(RTCScene scene, double within, NearestQuery& q) {
   RTCPointQuery embree{};
   embree.x = static_cast<float>(q.query.x());
   embree.y = static_cast<float>(q.query.y());
@@ -309,9 +327,26 @@ NearestPoint RayScene::nearest(const Vec3& query, double within) const {
   embree.radius = static_cast<float>(within + q.margin);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl_->scene, &embree, &context, visit_triangle, &q);
-  if (q.best == kInfinity) return {};
-  return {impl_->original[q.triangle], q.best, q.point + impl_->center};
+  rtcPointQuery(scene, &embree, &context, visit_triangle, &q);
+}
+
+}  // namespace
+
+NearestPoint RayScene::nearest(const Vec3& query, double within) const {
+  if (!impl_->scene || !query.allFinite()) return {};
+  NearestQuery q = impl_->query_at(query);
+  search(impl_->scene, within, q);
+  return impl_->answer(q);
+}
+
+NearestPoint NearestInTurn::operator()(const Vec3& query) {
+  const RayScene::Impl& impl = *scene_.impl_;
+  if (!impl.scene || !query.allFinite()) return {};
+  NearestQuery q = impl.query_at(query);
+  if (last_ >= 0) q.improve(static_cast<unsigned>(last_));
+  search(impl.scene, q.best, q);
+  last_ = q.triangle;
+  return impl.answer(q);
 }
 
 std::vector<Vec3> sphere_directions(int n) {

@@ -52,8 +52,22 @@ class RayScene {
                        double within = std::numeric_limits<double>::infinity()) const;
 
  private:
+  friend class NearestInTurn;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// Nearest points of queries that mostly lie near the one before: the search begins with the
+/// triangle that was the last one's. Answers as RayScene::nearest, sooner. One a thread; the scene
+/// must outlive it.
+class NearestInTurn {
+ public:
+  explicit NearestInTurn(const RayScene& scene) : scene_(scene) {}
+  NearestPoint operator()(const Vec3& query);
+
+ private:
+  const RayScene& scene_;
+  std::int64_t last_ = -1;  ///< the scene's own number of a triangle
 };
 
 /// n unit directions spread over the sphere (Fibonacci lattice), the same at every call.

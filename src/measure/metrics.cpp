@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/meshopt.h"
 #include "core/parallel.h"
 #include "core/point_tree.h"
 #include "core/rays.h"
@@ -73,7 +74,8 @@ std::vector<char> picked(const std::vector<char>& flags, const std::vector<std::
 struct Probes {
   std::vector<Vec3> points;
   std::size_t samples = 0;
-  std::vector<char> is_left_out;  ///< per point; empty: none
+  std::vector<char> is_left_out;     ///< per point; empty: none
+  std::vector<std::uint32_t> order;  ///< in which they are looked at: neighbours one after another
 };
 
 /// A vertex is left out with all its faces.
@@ -110,6 +112,7 @@ Probes sample_surface(const Mesh& mesh, const DistanceOptions& options,
   };
   parallel_for(probes.samples, place, kGrainOfQueries);
   add_vertices(mesh, is_left_out, probes);
+  probes.order = order_in_space(probes.points);
   return probes;
 }
 
@@ -142,16 +145,15 @@ Spread spread_of(const Probes& probes, const std::vector<double>& distances) {
   return spread;
 }
 
-/// `distance` is given a point and an upper bound of the result, from the probe before: neighbours
-/// in the list are mostly neighbours in space.
-template <typename Distance>
-OneSided measure(const Probes& probes, const Distance& distance) {
+/// `make_distance` makes what is asked for the distances of neighbours, one after another.
+template <typename MakeDistance>
+OneSided measure(const Probes& probes, const MakeDistance& make_distance) {
   std::vector<double> distances(probes.points.size());
   parallel_ranges(probes.points.size(), kGrainOfQueries, [&](std::size_t begin, std::size_t end) {
-    double bound = std::numeric_limits<double>::infinity();
+    auto distance = make_distance();
     for (std::size_t i = begin; i < end; ++i) {
-      if (i > begin) bound = distances[i - 1] + (probes.points[i] - probes.points[i - 1]).norm();
-      distances[i] = distance(probes.points[i], bound);
+      const std::size_t probe = probes.order[i];
+      distances[probe] = distance(probes.points[probe]);
     }
   });
   OneSided side;
@@ -169,16 +171,19 @@ OneSided measure(const Probes& probes, const Distance& distance) {
 }
 
 OneSided measure_to_mesh(const Probes& probes, const RayScene& target) {
-  return measure(probes,
-                 [&](const Vec3& p, double bound) { return target.nearest(p, bound).distance; });
+  return measure(probes, [&] {
+    return [nearest = NearestInTurn(target)](const Vec3& p) mutable { return nearest(p).distance; };
+  });
 }
 
 OneSided measure_to_cloud(const Probes& probes, const PointTree& target) {
-  return measure(probes, [&](const Vec3& p, double) {
-    std::size_t nearest = 0;
-    double squared = 0;
-    target.knnSearch(p.data(), 1, &nearest, &squared);
-    return std::sqrt(squared);
+  return measure(probes, [&] {
+    return [&](const Vec3& p) {
+      std::size_t nearest = 0;
+      double squared = 0;
+      target.knnSearch(p.data(), 1, &nearest, &squared);
+      return std::sqrt(squared);
+    };
   });
 }
 
@@ -217,6 +222,7 @@ struct DistanceGauge::Impl {
     std::vector<std::size_t> original;
     probes.points = usable_part(a, name.empty() ? "source" : name.c_str(), &original).points;
     probes.samples = probes.points.size();
+    probes.order = order_in_space(probes.points);
     probes.is_left_out = picked(is_left_out, original);
     box = bounding_box(probes.points);
     cloud = std::make_unique<PointTree>(3, points);

@@ -24,17 +24,22 @@ using Channel = std::vector<float>;
 template <typename Pick>
 Channel over_neighbours(const Channel& in, int width, int height, const Pick& pick) {
   Channel rows(in.size()), out(in.size());
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y) * width + x;
-      rows[at] = pick(in[at], pick(in[x > 0 ? at - 1 : at], in[x + 1 < width ? at + 1 : at]));
-    }
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y) * width + x;
-      out[at] = pick(rows[at],
-                     pick(rows[y > 0 ? at - width : at], rows[y + 1 < height ? at + width : at]));
-    }
+  for (int y = 0; y < height; ++y) {
+    const float* row = &in[static_cast<std::size_t>(y) * width];
+    float* to = &rows[static_cast<std::size_t>(y) * width];
+    for (int x = 1; x + 1 < width; ++x) to[x] = pick(row[x], pick(row[x - 1], row[x + 1]));
+    const int last = width - 1;
+    to[0] = pick(row[0], row[std::min(1, last)]);
+    to[last] = pick(row[last], row[std::max(0, last - 1)]);
+  }
+  for (int y = 0; y < height; ++y) {
+    const auto row = [&](int v) {
+      return &rows[static_cast<std::size_t>(std::clamp(v, 0, height - 1)) * width];
+    };
+    const float *above = row(y - 1), *here = row(y), *below = row(y + 1);
+    float* to = &out[static_cast<std::size_t>(y) * width];
+    for (int x = 0; x < width; ++x) to[x] = pick(here[x], pick(above[x], below[x]));
+  }
   return out;
 }
 
@@ -81,9 +86,16 @@ int farthest(const GreyPicture& a, const GreyPicture& b) {
   std::vector<int> front, open;
   for (std::size_t i = 0; i < is_reached.size(); ++i) {
     is_reached[i] = b.coverage[i] >= kHardlyCovered;
-    if (is_reached[i]) front.push_back(static_cast<int>(i));
     if (!is_reached[i] && a.coverage[i] >= kCovered) open.push_back(static_cast<int>(i));
   }
+  if (open.empty()) return 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const char* const at = &is_reached[static_cast<std::size_t>(y) * width + x];
+      const bool is_inside = (x == 0 || at[-1]) && (x + 1 == width || at[1]) &&
+                             (y == 0 || at[-width]) && (y + 1 == height || at[width]);
+      if (*at && !is_inside) front.push_back(y * width + x);
+    }
   for (int step = 0; step < kMostOutline; ++step) {
     std::erase_if(open, [&](int i) { return is_reached[i]; });
     if (open.empty()) return step;

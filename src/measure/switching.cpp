@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "deviation.h"
@@ -38,13 +39,28 @@ std::vector<int> pixel_sizes() {
   return sizes;
 }
 
-/// Per pixel size the difference of two pictures, from the coarsest down until it is past caring;
-/// kMostPixels for the rest.
-std::vector<double> differences(const FarPicture& a, const FarPicture& b,
-                                const std::vector<int>& sizes) {
-  std::vector<double> out(sizes.size(), kMostPixels);
-  for (std::size_t i = sizes.size(); i-- > 0;) {
-    const double pixels = compare_pictures(a.at(sizes[i]), b.at(sizes[i])).pixels();
+/// One mesh in one view at all sizes of pixels, each made when it is first asked for.
+class SizedPictures {
+ public:
+  SizedPictures(const Mesh& mesh, const FarView& view, const std::vector<int>& sizes)
+      : far_(mesh, view), sizes_(sizes), made_(sizes.size()) {}
+  const GreyPicture& at(std::size_t size) {
+    if (!made_[size]) made_[size] = far_.at(sizes_[size]);
+    return *made_[size];
+  }
+
+ private:
+  FarPicture far_;
+  const std::vector<int>& sizes_;
+  std::vector<std::optional<GreyPicture>> made_;
+};
+
+/// Per pixel size the difference of two meshes' pictures, from the coarsest down until it is past
+/// caring; kMostPixels for the rest.
+std::vector<double> differences(SizedPictures& a, SizedPictures& b, std::size_t sizes) {
+  std::vector<double> out(sizes, kMostPixels);
+  for (std::size_t i = sizes; i-- > 0;) {
+    const double pixels = compare_pictures(a.at(i), b.at(i)).pixels();
     if (pixels >= kMostPixels) break;
     out[i] = pixels;
   }
@@ -84,10 +100,12 @@ void draw_profiles(const std::vector<Mesh>& layers, double sample,
       layers.size(), std::vector<std::vector<double>>(directions.size()));
   parallel_for(directions.size(), [&](std::size_t v) {
     const FarView view = far_view(box, directions[v], sample);
-    const FarPicture finest(layers.back(), view);
-    for (std::size_t k = 0; k + 1 < layers.size(); ++k)
-      if (!sights[k].is_like_finer)
-        found[k][v] = differences(FarPicture(layers[k], view), finest, sizes);
+    SizedPictures finest(layers.back(), view, sizes);
+    for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
+      if (sights[k].is_like_finer) continue;
+      SizedPictures layer(layers[k], view, sizes);
+      found[k][v] = differences(layer, finest, sizes.size());
+    }
   });
   for (std::size_t k = 0; k + 1 < layers.size(); ++k)
     if (!sights[k].is_like_finer) sights[k].profile = profile_of(found[k], sizes, sample);

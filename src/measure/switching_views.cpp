@@ -142,6 +142,8 @@ GreyPicture FarPicture::at(int n) const {
   GreyPicture out{(width_ + n - 1) / n, (height_ + n - 1) / n, {}, {}};
   const std::size_t stride = static_cast<std::size_t>(width_) + 1;
   const float share = 1.0f / static_cast<float>(n * n);
+  out.luminance.reserve(static_cast<std::size_t>(out.width) * out.height);
+  out.coverage.reserve(static_cast<std::size_t>(out.width) * out.height);
   for (int y = 0; y < height_; y += n)
     for (int x = 0; x < width_; x += n) {
       const int right = std::min(x + n, width_), bottom = std::min(y + n, height_);

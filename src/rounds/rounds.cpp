@@ -12,6 +12,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 
 #include "core/flat.h"
@@ -87,6 +88,51 @@ bool is_alike(const Meridian& m, double step) {
   return std::abs(m.step - step) <= kSameStep * step;
 }
 
+/// The meridians about one direction whose faces are not taken. A scan has tens of thousands, of
+/// which few share a step.
+class Meridians {
+ public:
+  explicit Meridians(std::vector<Meridian> all) : all_(std::move(all)), by_step_(all_.size()) {
+    std::iota(by_step_.begin(), by_step_.end(), 0);
+    std::sort(by_step_.begin(), by_step_.end(),
+              [&](int a, int b) { return std::tie(all_[a].step, a) < std::tie(all_[b].step, b); });
+  }
+  const std::vector<Meridian>& all() const { return all_; }
+  /// Those with a step, in the order of all.
+  std::vector<Meridian> alike(double step) const;
+  void drop_taken(const std::vector<char>& is_taken);
+
+ private:
+  std::vector<Meridian> all_;
+  std::vector<int> by_step_;
+};
+
+std::vector<Meridian> Meridians::alike(double step) const {
+  auto begin = std::partition_point(by_step_.begin(), by_step_.end(), [&](int i) {
+    return all_[i].step < step && !is_alike(all_[i], step);
+  });
+  const auto end =
+      std::partition_point(begin, by_step_.end(), [&](int i) { return is_alike(all_[i], step); });
+  std::vector<int> found(begin, end);
+  std::sort(found.begin(), found.end());
+  std::vector<Meridian> result;
+  for (const int i : found) result.push_back(all_[i]);
+  return result;
+}
+
+void Meridians::drop_taken(const std::vector<char>& is_taken) {
+  std::vector<int> place(all_.size(), -1);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    if (is_taken[all_[i].faces[0]] || is_taken[all_[i].faces[1]]) continue;
+    place[i] = static_cast<int>(kept);
+    all_[kept++] = all_[i];
+  }
+  all_.resize(kept);
+  std::erase_if(by_step_, [&](int i) { return place[i] < 0; });
+  for (int& i : by_step_) i = place[i];
+}
+
 bool is_about(const Meridian& m, const Vec2& center) {
   return std::abs(cross(m.outward, m.at - center)) <= kOnAxis;
 }
@@ -124,14 +170,11 @@ std::vector<int> sample(const std::vector<Meridian>& all) {
   return samples;
 }
 
-Center vote(const std::vector<Meridian>& all) {
+Center vote(const Meridians& meridians) {
   Center best;
-  std::vector<Meridian> alike;  // most meridians of a scan have another step
-  for (const int i : sample(all)) {
-    const Meridian& a = all[static_cast<std::size_t>(i)];
-    alike.clear();
-    for (const Meridian& m : all)
-      if (is_alike(m, a.step)) alike.push_back(m);
+  for (const int i : sample(meridians.all())) {
+    const Meridian& a = meridians.all()[static_cast<std::size_t>(i)];
+    const std::vector<Meridian> alike = meridians.alike(a.step);
     for (const int j : partners_of(alike, a)) {
       const Meridian& b = alike[static_cast<std::size_t>(j)];
       const double t = cross(b.at - a.at, b.outward) / cross(a.outward, b.outward);
@@ -208,14 +251,13 @@ Division divide(const std::vector<Meridian>& lines) {
 
 /// The shape around the best centre, without its rows; no columns: there is none. `founders`: the
 /// faces beside its meridians.
-RoundShape around(const Axes& axes, const std::vector<Meridian>& all, std::vector<int>& founders) {
+RoundShape around(const Axes& axes, const Meridians& meridians, std::vector<int>& founders) {
   RoundShape shape;
-  Center center = vote(all);
+  Center center = vote(meridians);
   std::vector<Meridian> lines;
   for (int round = 0; round < 2; ++round) {
-    lines.clear();
-    for (const Meridian& m : all)
-      if (is_alike(m, center.step) && is_about(m, center.at)) lines.push_back(m);
+    lines = meridians.alike(center.step);
+    std::erase_if(lines, [&](const Meridian& m) { return !is_about(m, center.at); });
     if (lines.size() < kLeastMeridians) return shape;
     center.at = meet(lines);
     if (!center.at.allFinite()) return shape;
@@ -277,13 +319,15 @@ bool is_substantial(const RoundShape& shape, double total) {
 std::vector<RoundShape> find_along(const Vec3& direction, const std::vector<BentEdge>& edges,
                                    Facets& facets) {
   std::vector<RoundShape> shapes;
+  const Axes axes = axes_of(direction);
+  Meridians meridians(meridians_along(facets, edges, axes));
   for (int trial = 0; trial < kMostShapes; ++trial) {
-    const Axes axes = axes_of(direction);
     std::vector<int> founders;
-    RoundShape shape = around(axes, meridians_along(facets, edges, axes), founders);
+    RoundShape shape = around(axes, meridians, founders);
     if (shape.columns == 0 || !find_sides(facets, founders, shape)) break;
     for (const RoundShape::Side& s : shape.sides)
       for (const int f : s.faces) facets.is_taken[f] = 1;
+    meridians.drop_taken(facets.is_taken);
     if (is_substantial(shape, facets.total_area)) shapes.push_back(std::move(shape));
   }
   return shapes;

@@ -1,8 +1,11 @@
 #include "core/rays.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
+#include "core/meshopt.h"
 #include "meshes.h"
 
 using namespace colod;
@@ -157,6 +160,44 @@ TEST_CASE("nearest agrees with brute force to double precision") {
     REQUIRE(scene.nearest(p, near.distance).triangle == near.triangle);
     REQUIRE(brute_distance(soup, soup.faces[near.triangle], p) == Approx(best).epsilon(1e-10));
   }
+}
+
+TEST_CASE("nearest in turn answers as nearest, whatever was asked before") {
+  Rng rng(17);
+  Mesh soup = random_soup(rng, 300, 2);
+  const std::vector<Face> once = soup.faces;
+  soup.faces.insert(soup.faces.end(), once.begin(), once.end());  // as near as the first ones
+  const RayScene scene(soup);
+  NearestInTurn in_turn(scene);
+  Vec3 p = rng.point(15);
+  for (int i = 0; i < 3000; ++i) {
+    p = i % 10 ? Vec3(p + 0.02 * rng.direction()) : rng.point(i % 3 ? 15 : 300);
+    if (i % 500 == 0) CHECK(in_turn({std::nan(""), 0, 0}).triangle == -1);
+    const NearestPoint near = in_turn(p), alone = scene.nearest(p);
+    REQUIRE(near.triangle == alone.triangle);
+    REQUIRE(near.distance == alone.distance);
+    REQUIRE(near.point == alone.point);
+  }
+  const RayScene empty{Mesh()};
+  CHECK(NearestInTurn(empty)({0, 0, 0}).triangle == -1);
+}
+
+TEST_CASE("an order in space names all points once, and walks far less than the given one") {
+  Rng rng(19);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 2000; ++i) points.push_back(Vec3(4e6, 5e6, 0) + rng.point(100));
+  const std::vector<std::uint32_t> order = order_in_space(points);
+  std::vector<char> is_named(points.size(), 0);
+  for (const std::uint32_t i : order) is_named.at(i) = 1;
+  REQUIRE(order.size() == points.size());
+  CHECK(std::count(is_named.begin(), is_named.end(), 1) == 2000);
+  double given = 0, walked = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    given += (points[i] - points[i - 1]).norm();
+    walked += (points[order[i]] - points[order[i - 1]]).norm();
+  }
+  CHECK(walked < 0.25 * given);
+  CHECK(order_in_space({}).empty());
 }
 
 TEST_CASE("nearest keeps its digits a thousand kilometres from the origin") {
