@@ -32,15 +32,25 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
 constexpr const char* kEmptyLayer =
     "came out empty: no body in the input's box; a piece far away, or --unit, makes it too large";
 
-/// What is melted, which nothing with exact round shapes is, has its relief's planes; all else is
-/// freed of its ground and inside first.
+constexpr const char* kNoRoof =
+    "its walls are stepped as the cells of its heights are, since no roof was told apart from the "
+    "ground: --footprints with its plan says where it stands";
+constexpr const char* kSteppedByChoice =
+    "its walls are stepped as the cells of its heights are: --rules robust without --without "
+    "relief.melted makes them straight";
+
+/// What is melted, which nothing with exact round shapes is, has its relief's planes, as has a
+/// raster of heights, whose steps may look round; all else is freed of its ground and inside first.
 void find_planes(Building& b, const Options& o) {
   Stopwatch watch(b.timings.planes);
-  if (o.rules.has(Rule::kRelief) && find_rounds(b.source, o.rules).empty())
+  const bool is_of_heights = is_raster(b.source.mesh);
+  if (o.rules.has(Rule::kRelief) && (is_of_heights || find_rounds(b.source, o.rules).empty()))
     if (std::optional<Relief> relief = find_relief(b.source.mesh)) {
       b.planes = relief_planes(b.source, *std::move(relief));
       return;
     }
+  if (is_of_heights)
+    b.source.warnings.emplace_back(o.rules.has(Rule::kRelief) ? kNoRoof : kSteppedByChoice);
   if (o.rules.has(Rule::kGround)) b.source = separate_ground(std::move(b.source));
   if (o.rules.has(Rule::kHidden)) b.source = remove_hidden(std::move(b.source));
   b.planes = detect_planes(b.source, {.rules = o.rules,

@@ -51,6 +51,51 @@ double window_residual(const Field& f, int i) {
   return std::sqrt(std::max(0.0, c(2, 2) - xz.dot(xy.inverse() * xz)));
 }
 
+/// Metres of height a metre, towards where it rises.
+Vec2 gradient(const Field& f, int i) {
+  const auto around = f.beside(i);
+  const auto along = [&](int a, int b) {
+    const bool has_a = a >= 0 && f.has(a), has_b = b >= 0 && f.has(b);
+    if (!has_a && !has_b) return 0.0;
+    return ((has_b ? f.height[b] : f.height[i]) - (has_a ? f.height[a] : f.height[i])) /
+           (f.cell * (int{has_a} + int{has_b}));
+  };
+  return {along(around[0], around[1]), along(around[2], around[3])};
+}
+
+/// What is steep up and down from a cell, in a straight line.
+struct SteepRun {
+  double length = 0, rise = 0;  // metres
+};
+
+SteepRun run_through(const Field& f, const std::vector<char>& is_steep, int cell, const Vec2& up) {
+  const auto end = [&](double way) {
+    int last = cell;
+    for (double off = f.cell; off < kLongestRun; off += f.cell) {
+      const int at = f.at(f.center(cell) + way * off * up);
+      if (at < 0 || !is_steep[at] || way * (f.height[at] - f.height[last]) < 0) break;
+      last = at;
+    }
+    return last;
+  };
+  const int low = end(-1), high = end(1);
+  return {(f.center(high) - f.center(low)).norm(), f.height[high] - f.height[low]};
+}
+
+/// Steep cells of a raster that are no wall.
+void keep_steep_roofs(Field& f, double raster) {
+  const std::vector<char> is_steep = f.is_steep;
+  for (int i = 0; i < f.size(); ++i) {
+    if (!is_steep[i]) continue;
+    const Vec2 slope = gradient(f, i);
+    const double tilt = slope.norm();
+    if (!(tilt > 0)) continue;
+    const SteepRun run = run_through(f, is_steep, i, slope / tilt);
+    if (run.length > kSteepRun * raster && tilt * run.length < kWallOfRun * run.rise)
+      f.is_steep[i] = 0;
+  }
+}
+
 }  // namespace
 
 int Field::at(const Vec2& p) const {
@@ -65,7 +110,7 @@ std::array<int, 4> Field::beside(int i) const {
           r + 1 < rows ? i + columns : -1};
 }
 
-Field make_field(const Mesh& mesh, const RayScene& rays, double median_edge) {
+Field make_field(const Mesh& mesh, const RayScene& rays, double median_edge, double raster) {
   const Box box = bounding_box(mesh.vertices);
   const Vec3 size = box.size();
   Field f;
@@ -86,6 +131,7 @@ Field make_field(const Mesh& mesh, const RayScene& rays, double median_edge) {
     }
   });
   for (int i = 0; i < f.size(); ++i) f.is_steep[i] = f.has(i) && slope(f, i) > kSteep;
+  if (raster > 0) keep_steep_roofs(f, raster);
   return f;
 }
 

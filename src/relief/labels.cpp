@@ -57,7 +57,9 @@ class Labeller {
         label_(std::move(patches.patch_of_cell)),
         noise_(scales.noise),
         span_(scales.span),
-        tolerance_(scales.tolerance) {}
+        tolerance_(scales.tolerance),
+        slide_(scales.raster > 0 ? kRasterSlide * scales.raster
+                                 : std::max(kStrip, kSlideSpan * span_)) {}
 
   Labels squared() {
     square();
@@ -149,8 +151,7 @@ class Labeller {
       becomes[a] = static_cast<int>(a);
       if (is_strip && p.area < kStripArea * total) becomes[a] = kOutside;
       if (is_minor && is_rough) becomes[a] = s.at_ground > 0.5 * s.border ? kOutside : kOpen;
-      const bool is_slide =
-          p.slope.norm() > kSlide && s.half_width < std::max(kStrip, kSlideSpan * span_);
+      const bool is_slide = p.slope.norm() > kSlide && s.half_width < slide_;
       const bool is_speck = p.area < kLeastPatch * span_ * span_ || s.half_width < kThin;
       if ((is_slide || is_speck) && becomes[a] >= 0) becomes[a] = kOpen;
     }
@@ -286,6 +287,7 @@ class Labeller {
   std::vector<Patch> patches_;
   std::vector<int> label_;
   double noise_, span_, tolerance_;
+  double slide_;  // metres: half of the width of what may be the side of a wall
 };
 
 }  // namespace

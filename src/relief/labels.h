@@ -21,6 +21,7 @@ struct Scales {
   double noise = 0;      ///< metres, as for find_patches
   double span = 0;       ///< metres, likewise
   double tolerance = 0;  ///< metres that a border may leave its line
+  double raster = 0;     ///< metres: side of a raster's cells, as wide as its walls; 0: it is none
 };
 
 /// Every cell of the building gets a patch: walls, holes and what is too small or too rough for one

@@ -17,8 +17,10 @@
 #include "core/drawn.h"
 #include "core/flat.h"
 #include "parameters.h"
+#include "relief.h"
 
-namespace colod::relief {
+namespace colod {
+namespace relief {
 namespace {
 
 using namespace parameters::relief;
@@ -131,6 +133,28 @@ double measure_bulge(const Mesh& mesh, const std::vector<Side>& sides, double ed
   return residuals[residuals.size() / 4];
 }
 
+/// A face seen from above: twice its area, and its sides by length.
+struct Shadow {
+  double twice = 0;
+  std::array<double, 3> sides{};
+
+  /// Half a square of so many metres.
+  bool is_half_of(double cell) const {
+    const auto is_near = [&](double side, double times) {
+      return std::abs(side - times * cell) < kSameCell * cell;
+    };
+    return is_near(sides[0], 1) && is_near(sides[1], 1) && is_near(sides[2], M_SQRT2);
+  }
+};
+
+Shadow shadow_of(const Mesh& mesh, const Face& face) {
+  Shadow shadow{face_cross(mesh, face).z()};
+  for (std::size_t k = 0; k < 3; ++k)
+    shadow.sides[k] = (mesh.vertices[face[k]] - mesh.vertices[face[(k + 1) % 3]]).head<2>().norm();
+  std::sort(shadow.sides.begin(), shadow.sides.end());
+  return shadow;
+}
+
 }  // namespace
 
 bool Melting::is_leaning() const { return lean > kLeastLean; }
@@ -149,7 +173,31 @@ Melting measure_melting(const Mesh& mesh) {
   const std::vector<Side> sides = sides_of(mesh);
   if (sides.empty()) return {};
   const double edge = median_edge(mesh);
-  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides), drawn_share(mesh)};
+  return {edge, measure_bulge(mesh, sides, edge), mean_lean(sides), drawn_share(mesh),
+          raster_cell(mesh)};
 }
 
-}  // namespace colod::relief
+double raster_cell(const Mesh& mesh) {
+  if (mesh.faces.size() < kLeastRaster) return 0;
+  std::vector<Shadow> shadows;
+  std::vector<double> cells;
+  double area = 0, other = 0;  // twice, of faces that do not look up: there is more than heights
+  for (const Face& f : mesh.faces) {
+    shadows.push_back(shadow_of(mesh, f));
+    const Shadow& s = shadows.back();
+    if (s.is_half_of(s.sides[0])) cells.push_back(s.sides[0]);
+    const double own = face_cross(mesh, f).norm();
+    area += own, other += s.twice < kUpright * own ? own : 0;
+  }
+  if (cells.empty()) return 0;
+  const double cell = median(std::move(cells));
+  double plan = 0, whole = 0;
+  for (const Shadow& s : shadows) plan += s.twice, whole += s.is_half_of(cell) ? s.twice : 0;
+  return other < kMostOther * area && whole > kWholeCells * plan ? cell : 0;
+}
+
+}  // namespace relief
+
+bool is_raster(const Mesh& mesh) { return relief::raster_cell(mesh) > 0; }
+
+}  // namespace colod

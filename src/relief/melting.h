@@ -6,10 +6,11 @@
 namespace colod::relief {
 
 struct Melting {
-  double edge = 0;   ///< metres: median edge
-  double bulge = 0;  ///< metres: residual of a piece of wall or roof as wide as a window
-  double lean = 0;   ///< z of the walls' outward normals, their mean: noise leans both ways
-  double drawn = 0;  ///< 0..1 of the area: as people draw (core/drawn.h)
+  double edge = 0;    ///< metres: median edge
+  double bulge = 0;   ///< metres: residual of a piece of wall or roof as wide as a window
+  double lean = 0;    ///< z of the walls' outward normals, their mean: noise leans both ways
+  double drawn = 0;   ///< 0..1 of the area: as people draw (core/drawn.h)
+  double raster = 0;  ///< metres: side of the cells of a raster (relief.h); 0: it is none
 
   /// Walls lean outward: drawn from heights, or from pictures that were taken from above.
   bool is_leaning() const;
@@ -23,5 +24,8 @@ struct Melting {
 };
 
 Melting measure_melting(const Mesh& mesh);
+
+/// Metres, of the squares of which most of the plan consists; 0: it is no raster.
+double raster_cell(const Mesh& mesh);
 
 }  // namespace colod::relief

@@ -10,6 +10,9 @@ constexpr double kCellShare = 0.35;                  // of the median edge: a ce
 constexpr double kLeastCell = 0.1, kMostCell = 0.5;  // metres
 constexpr double kMostCells = 400;                   // along the longer side
 constexpr double kSteep = 1.7;                       // metres a metre (60°): a wall
+constexpr double kSteepRun = 2.6;        // cells of a raster: what is steep over more is a roof …
+constexpr double kWallOfRun = 1.5;       // … but for the wall at its end: steeper than its mean
+constexpr double kLongestRun = 6;        // metres that are looked at
 constexpr double kRoom = 2;              // metres around a place, where noise is measured
 constexpr double kNoiseQuantile = 0.35;  // of such places: the others have edges in them
 constexpr int kSamples = 500;
@@ -30,6 +33,13 @@ constexpr double kLeastSupport = 0.1;   // of the walls that are drawn: seen, in
 constexpr double kLeastRoof = 0.15;     // of what is seen from above: with less there is no ground
 constexpr double kExplained = 0.7;      // of the surface: near roofs and walls …
 constexpr double kWideExplained = 0.5;  // … where nothing else can be told
+
+// Whether it is heights on a grid.
+constexpr std::size_t kLeastRaster = 60;  // faces: a shed of 8 m² with its eaves in cells of 1 m
+constexpr double kSameCell = 1e-2;        // of a cell: how far its sides are rounded, and more
+constexpr double kWholeCells = 0.5;  // of the plan: cells that no rim cuts, 0.84 and more of sheds
+constexpr double kUpright = 1e-3;    // z of a normal: less looks aside or down …
+constexpr double kMostOther = 1e-3;  // … and is no height: of the area, slivers at the rim
 
 // Scales.
 constexpr double kLeastSpan = 1;                         // metres that bumps are wide, at least
@@ -66,6 +76,7 @@ constexpr double kStripArea = 0.4;    // of all patches' area: next door is no m
 constexpr double kSlide = 0.85;      // metres a metre (40°): a strip so steep is a melted wall …
 constexpr double kSlideSpan = 0.8;   // … up to so many bumps on each side
 constexpr double kLeastPatch = 1.5;  // bumps' squares
+constexpr double kRasterSlide = 0.75;  // cells of a raster: likewise, where a wall is one wide
 constexpr int kSmoothings = 4;
 constexpr double kMostOff = 9;    // squared, in noise: more is as bad
 constexpr double kIsland = 0.05;  // of the largest part: one that stands apart and is of it

@@ -76,7 +76,7 @@ Plan draw_plan(const Mesh& mesh, const Melting& melting, bool has_ground = true)
   const double edge = melting.edge;
   const RayScene rays(mesh);
   Plan plan;
-  plan.field = make_field(mesh, rays, edge);
+  plan.field = make_field(mesh, rays, edge, melting.raster);
   plan.ground = find_ground(plan.field, mesh, has_ground);
   const double span = std::max(kLeastSpan, edge);
   plan.noise = std::clamp(std::max(roof_noise(plan.field), melting.bulge), kLeastNoise, kMostNoise);
@@ -86,7 +86,8 @@ Plan draw_plan(const Mesh& mesh, const Melting& melting, bool has_ground = true)
   patches = find_patches(plan.field, is_roof, plan.noise, span);
   plan.tolerance = std::clamp(std::max(kToleranceEdge * edge, kToleranceNoise * plan.noise),
                               kLeastTolerance, kMostTolerance);
-  const Scales scales{.noise = plan.noise, .span = span, .tolerance = plan.tolerance};
+  const Scales scales{
+      .noise = plan.noise, .span = span, .tolerance = plan.tolerance, .raster = melting.raster};
   plan.labels = label_field(plan.field, plan.ground, std::move(patches), scales);
   plan.direction = find_direction(plan.field, plan.labels, plan.tolerance);
   regular_roofs(plan.field, plan.direction, plan.noise, plan.labels);
@@ -272,6 +273,11 @@ void turn(Relief& relief, double angle) {
   }
 }
 
+bool has_roof(const Relief& relief) {
+  return std::any_of(relief.parts.begin(), relief.parts.end(),
+                     [](const Relief::Part& p) { return !p.is_wall && !p.rings.empty(); });
+}
+
 std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
   Plan plan = draw_plan(mesh, melting);
   if (roof_share(plan) < kLeastRoof) plan = draw_plan(mesh, melting, false);
@@ -284,6 +290,7 @@ std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
   std::vector<std::vector<Piece>> pieces;
   for (Relief::Part& wall : walls_of(plan, pieces)) relief.parts.push_back(std::move(wall));
   share_out(mesh, plan, pieces, relief);
+  if (melting.raster > 0) return has_roof(relief) ? std::optional(std::move(relief)) : std::nullopt;
   if (supported_share(mesh, relief) < kLeastSupport ||
       explained_share(mesh, relief, melting.reach()) <
           (melting.is_wide() ? kWideExplained : kExplained))
@@ -295,7 +302,7 @@ std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
 
 std::optional<Relief> find_relief(const Mesh& mesh) {
   const Melting melting = measure_melting(mesh);
-  if (!melting.is_melted()) return std::nullopt;
+  if (melting.raster == 0 && !melting.is_melted()) return std::nullopt;
   const double yaw = draw_plan(mesh, melting).direction;
   std::optional<Relief> relief = read_relief(turned(mesh, -yaw), melting);
   if (relief) turn(*relief, yaw);

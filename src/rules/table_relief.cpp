@@ -61,6 +61,16 @@ std::vector<Parameter> melted_numbers() {
       {"same_roof", "", relief::kSameRoof,
        "times the noise from the plane of a larger roof: it is of it"},
       {"same_rise", "m", relief::kSameRise, "likewise"},
+      {"whole_cells", "", relief::kWholeCells,
+       "of the plan in half squares of one size, for heights on a grid: sheds that a rim cuts have "
+       "0.84 and more, no other mesh has any"},
+      {"steep_run", "cells", relief::kSteepRun,
+       "of such a grid: steeper than 60 degrees over more is a roof, a wall is one cell wide, two "
+       "across a corner"},
+      {"wall_of_run", "", relief::kWallOfRun,
+       "times the slope of what is steep there: the wall below such a roof"},
+      {"raster_slide", "cells", relief::kRasterSlide,
+       "half the width of a steep strip of such a grid that is the side of a wall"},
       {"block_noise", "", relief::kBlockNoise,
        "times the noise: what stands off a roof and may be a block"},
       {"flat_top", "", relief::kFlatTop, "of a block's rise: residual of its top"},
@@ -76,7 +86,8 @@ RuleInfo melted_rule() {
       .sees =
           "Meshes of which no more than the relief is known: those whose walls lean outward, as "
           "heights and pictures from above give them, and those so coarse or bulging that windows "
-          "cannot be told, if roofs and walls explain them.",
+          "cannot be told, if roofs and walls explain them; and all that are heights on a square "
+          "grid, as an airborne cloud's surface is.",
       .does =
           "Draws the mesh as heights along most of its border, parts the ground around, joins "
           "neighbouring pieces of roof while a plane explains less than it costs, raises blocks "
