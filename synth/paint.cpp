@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "core/parallel.h"
 #include "core/rays.h"
 #include "image/image.h"
 #include "image/packing.h"
@@ -32,6 +33,87 @@ struct Patch {
   double texel = 0;
 
   Vec2 flat(const Vec3& p) const { return {right.dot(p), down.dot(p)}; }
+};
+
+/// The faces of a patch on its plane, asked for many places one after another.
+class FlatFaces {
+ public:
+  FlatFaces(const Mesh& mesh, const Patch& patch) : corner_(patch.corner) {
+    for (const int f : patch.faces) {
+      FlatFace flat;
+      for (int k = 0; k < 3; ++k) flat.corner[k] = patch.flat(mesh.vertices[mesh.faces[f][k]]);
+      for (int k = 0; k < 3; ++k) {
+        flat.side[k] = flat.corner[(k + 1) % 3] - flat.corner[k];
+        flat.length[k] = flat.side[k].norm() + kNoLength;
+      }
+      faces_.push_back(flat);
+    }
+    cell_ = std::max(kLeastCell, std::sqrt(patch.size.prod() / static_cast<double>(faces_.size())));
+    columns_ = static_cast<int>(patch.size.x() / cell_) + 1;
+    rows_ = static_cast<int>(patch.size.y() / cell_) + 1;
+    cells_.resize(static_cast<std::size_t>(columns_) * rows_);
+    for (std::size_t i = 0; i < faces_.size(); ++i) list(i);
+  }
+
+  /// The number of the first that holds a place, else of the one that it is least outside of.
+  std::size_t at(const Vec2& q) {
+    for (const std::size_t i : cells_[cell_of(q)])
+      if (outside(i, q, 0) <= 0) return last_ = i;
+    double least = outside(last_, q, INFINITY);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const double own = outside(i, q, least);
+      if (own < least || (own == least && i < last_)) least = own, last_ = i;
+    }
+    return last_;
+  }
+
+ private:
+  static constexpr double kNoLength = 1e-9;   // metres: sides of no length divide nothing by zero
+  static constexpr double kLeastCell = 0.02;  // metres
+  static constexpr double kAbout = 1e-6;      // metres beyond a face's box, against rounding
+
+  struct FlatFace {
+    std::array<Vec2, 3> corner, side;
+    std::array<double, 3> length;
+  };
+
+  /// Metres beyond the farthest side, 0 inside; the plane's axes are mirrored. Some value beyond
+  /// `most` where it is beyond that.
+  double outside(std::size_t face, const Vec2& q, double most) const {
+    const FlatFace& f = faces_[face];
+    double far = 0;
+    for (int k = 0; k < 3 && far <= most; ++k) {
+      const Vec2 to = q - f.corner[k];
+      far = std::max(far, (f.side[k].x() * to.y() - f.side[k].y() * to.x()) / f.length[k]);
+    }
+    return far;
+  }
+
+  int along(double metres, int n) const {
+    return static_cast<int>(std::clamp<double>(std::floor(metres / cell_), 0, n - 1));
+  }
+
+  std::size_t cell_of(const Vec2& q) const {
+    return static_cast<std::size_t>(along(q.y() - corner_.y(), rows_)) * columns_ +
+           along(q.x() - corner_.x(), columns_);
+  }
+
+  void list(std::size_t face) {
+    const auto& c = faces_[face].corner;
+    const Vec2 about = Vec2::Constant(kAbout);
+    const Vec2 least = c[0].cwiseMin(c[1]).cwiseMin(c[2]) - corner_ - about;
+    const Vec2 most = c[0].cwiseMax(c[1]).cwiseMax(c[2]) - corner_ + about;
+    for (int y = along(least.y(), rows_); y <= along(most.y(), rows_); ++y)
+      for (int x = along(least.x(), columns_); x <= along(most.x(), columns_); ++x)
+        cells_[static_cast<std::size_t>(y) * columns_ + x].push_back(face);
+  }
+
+  Vec2 corner_;
+  std::vector<FlatFace> faces_;
+  double cell_ = 1;  // metres, a side
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::vector<std::size_t>> cells_;  // row by row, the faces that come near, in order
+  std::size_t last_ = 0;                         // the answer before: the next is mostly the same
 };
 
 class Painter {
@@ -122,9 +204,8 @@ class Painter {
     return object < 0 ? ElementKind::kPlain : building.parts[object].kind;
   }
 
-  /// What a place of a patch's plane shows.
-  Spot spot_at(const Patch& patch, const Vec2& q) const {
-    const int face = face_at(patch, q);
+  /// What a place of a patch's plane shows, of the face that lies there.
+  Spot spot_at(const Patch& patch, int face, const Vec2& q) const {
     const Vec3 in_plane = q.x() * patch.right + q.y() * patch.down;
     const Vec3 corner = mesh_.vertices[mesh_.faces[face][0]];
     const double slope = std::max(0.2, normals_[face].dot(patch.normal));
@@ -140,8 +221,8 @@ class Painter {
   }
 
   /// The mean over a texel, on the plane of the place in its middle.
-  Light texel_at(const Patch& patch, const Vec2& q, const Paint& paint) const {
-    const Spot spot = spot_at(patch, q);
+  Light texel_at(const Patch& patch, int face, const Vec2& q, const Paint& paint) const {
+    const Spot spot = spot_at(patch, face, q);
     Light sum = Light::Zero();
     for (int k = 0; k < kSamples * kSamples; ++k) {
       const Vec2 to = Vec2(k % kSamples + 0.5, k / kSamples + 0.5) / kSamples - Vec2(0.5, 0.5);
@@ -149,24 +230,6 @@ class Painter {
       sum += paint.at(spot, spot.place + offset - spot.normal.dot(offset) * spot.normal);
     }
     return sum / (kSamples * kSamples);
-  }
-
-  /// Of the faces of a patch the one that lies under a place of its plane, else the nearest.
-  int face_at(const Patch& patch, const Vec2& q) const {
-    int best = patch.faces[0];
-    double least = INFINITY;
-    for (const int f : patch.faces) {
-      std::array<Vec2, 3> c;
-      for (int k = 0; k < 3; ++k) c[k] = patch.flat(mesh_.vertices[mesh_.faces[f][k]]);
-      double outside = 0;  // how far beyond the farthest side; the plane's axes are mirrored
-      for (int k = 0; k < 3; ++k) {
-        const Vec2 side = c[(k + 1) % 3] - c[k], to = q - c[k];
-        outside = std::max(outside, (side.x() * to.y() - side.y() * to.x()) / (side.norm() + 1e-9));
-      }
-      if (outside < least) least = outside, best = f;
-      if (outside <= 0) break;
-    }
-    return best;
   }
 
   /// Of the clean model: a scan ends above or below it.
@@ -177,18 +240,19 @@ class Painter {
   Raster picture() const {
     Raster out(width_, height_);
     const Paint paint(foot(), seed_);
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
-      const Patch& patch = patches_[i];
-      const PackedRect& r = rects_[i];
-      for (int y = 0; y < r.height; ++y)
-        for (int x = 0; x < r.width; ++x) {
-          const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
-          const Light light = texel_at(patch, q, paint);
-          for (int c = 0; c < 3; ++c)
-            out.at(r.x + x, r.y + y)[c] = to_srgb(static_cast<float>(light[c]));
-        }
-    }
+    parallel_for(patches_.size(), [&](std::size_t i) { draw(patches_[i], rects_[i], paint, out); });
     return out;
+  }
+
+  void draw(const Patch& patch, const PackedRect& r, const Paint& paint, Raster& out) const {
+    FlatFaces faces(mesh_, patch);
+    for (int y = 0; y < r.height; ++y)
+      for (int x = 0; x < r.width; ++x) {
+        const Vec2 q = patch.corner + patch.texel * Vec2(x + 0.5 - kGutter, y + 0.5 - kGutter);
+        const Light light = texel_at(patch, patch.faces[faces.at(q)], q, paint);
+        for (int c = 0; c < 3; ++c)
+          out.at(r.x + x, r.y + y)[c] = to_srgb(static_cast<float>(light[c]));
+      }
   }
 
   std::string coordinates(const Patch& patch, const PackedRect& r, const Vec3& p) const {
