@@ -16,6 +16,7 @@
 #include "fill.h"
 #include "image/look_sampler.h"
 #include "owners.h"
+#include "panes.h"
 #include "parameters.h"
 #include "probe.h"
 #include "sight.h"
@@ -28,7 +29,8 @@ using namespace parameters::bake;
 
 namespace {
 
-constexpr int kSquare = 64;                // texels a side that one task draws
+constexpr int kSquare = 64;  // texels a side that one task draws
+constexpr int kUnasked = -2;
 constexpr double kColorSampleArea = 0.25;  // m² of a facet that a sample stands for
 constexpr int kMostColorSamples = 256;
 
@@ -57,9 +59,8 @@ struct Task {
   Window window;
 };
 
-std::uint8_t* put(std::uint8_t* pixel, const Light& light) {
+void put(std::uint8_t* pixel, const Light& light) {
   for (int c = 0; c < 3; ++c) pixel[c] = to_srgb(light[c]);
-  return pixel;
 }
 
 /// A normal map's texel: x right, y up, z outward.
@@ -68,7 +69,7 @@ void put_normal(std::uint8_t* pixel, const Vec3& normal) {
     pixel[c] = static_cast<std::uint8_t>(std::lround(127.5 * (normal[c] + 1)));
 }
 
-/// What a texel shows.
+/// What a texel shows, or the sum of what its samples do.
 struct Texel {
   Light light = Light::Zero();
   Vec3 normal = Vec3::Zero();  // the source's, not unit; zero: not asked for
@@ -170,13 +171,6 @@ class Painter {
     return near;
   }
 
-  /// How a normal stands on a chart; what turns away from it, as on a reveal, lies in its plane.
-  static Vec3 on_chart(const Chart& chart, const Vec3& normal) {
-    const Vec3 own(normal.dot(chart.right), -normal.dot(chart.down),
-                   std::max(0.0, normal.dot(chart.normal)));
-    return own.norm() > 0 ? own.normalized() : Vec3(Vec3::UnitZ());
-  }
-
   /// A window while it is drawn.
   struct View {
     const Chart& chart;
@@ -187,26 +181,47 @@ class Painter {
     std::vector<Sighting> sightings;
     Lens& lens;
     Probe::Holes holes;
+    Panes panes;
+    int together;  ///< samples along each side of a square that show one face beside them
+    std::vector<int> faces_beside;  ///< of each such square; −1: none
+    NearestPoint nearest;           ///< to the place that was asked for last
   };
 
-  View view_of(const Task& task, Lens& lens) const {
+  SampleGrid grid_of(const Task& task) const {
     const auto c = static_cast<std::size_t>(task.chart);
     const Window& w = task.window;
     const PackedRect& r = atlas_.rects[c];
     const double step = atlas_.texel / samples_;
     const Vec2 corner(w.x - r.x - kGutter, w.y - r.y - kGutter);
-    const SampleGrid grid{atlas_.texel * corner + Vec2::Constant(0.5 * step), step,
-                          w.width * samples_, w.height * samples_};
-    Probe::Holes holes = holes_in(sampler_, lens);
-    std::vector<Sighting> sightings = sights_[c].look(grid, holes);
-    return {charts_[c],           r,    sights_[c],      triangles_near(task), grid,
-            std::move(sightings), lens, std::move(holes)};
+    return {atlas_.texel * corner + Vec2::Constant(0.5 * step), step, w.width * samples_,
+            w.height * samples_};
+  }
+
+  static int together(const SampleGrid& grid, const Probe::Holes& holes) {
+    return holes ? 1 : std::clamp(static_cast<int>(kTogether / grid.step), 1, kMostTogether);
   }
 
   void draw(const Task& task, BakedTexture& out, Tally& tally) {
     const Window& w = task.window;
+    std::vector<Corners> triangles = triangles_near(task);
+    if (triangles.empty()) return;
+    const auto c = static_cast<std::size_t>(task.chart);
     Lens lens(cache_);
-    const View view = view_of(task, lens);
+    const SampleGrid grid = grid_of(task);
+    const Probe::Holes holes = holes_in(sampler_, lens);
+    View view{charts_[c],
+              atlas_.rects[c],
+              sights_[c],
+              std::move(triangles),
+              grid,
+              sights_[c].look(grid, holes),
+              lens,
+              holes,
+              Panes(sights_[c], grid, sampler_, lens),
+              together(grid, holes),
+              {},
+              {}};
+    if (view.together > 1) view.faces_beside.assign(view.sightings.size(), kUnasked);
     const std::vector<Owner> owners_of = owners(w, view.triangles);
     for (int y = 0; y < w.height; ++y)
       for (int x = 0; x < w.width; ++x) {
@@ -218,7 +233,7 @@ class Painter {
           put(out.image.at(w.x + x, w.y + y), texel.light);
           is_known_[static_cast<std::size_t>(w.y + y) * out.image.width + w.x + x] = 1;
           if (normals_)
-            put_normal(out.normals.at(w.x + x, w.y + y), on_chart(view.chart, texel.normal));
+            put_normal(out.normals.at(w.x + x, w.y + y), view.chart.turned(texel.normal));
         }
         if (own.distance > 0) continue;
         (how == Finding::kSeen      ? tally.seen
@@ -229,20 +244,17 @@ class Painter {
   }
 
   /// The mean of a texel's samples; each lies on the chart.
-  Finding look(const View& view, const Window& w, int x, int y, const Owner& own,
-               Texel& mean) const {
+  Finding look(View& view, const Window& w, int x, int y, const Owner& own, Texel& mean) const {
     const Corners& nearest = view.triangles[static_cast<std::size_t>(own.triangle)];
+    if (samples_ == 1 && own.distance <= 0) return sighted(view, x, y, mean);
     int found = 0, seen = 0;
     for (int j = 0; j < samples_; ++j)
       for (int i = 0; i < samples_; ++i) {
         const Vec2 at = Vec2(w.x + x, w.y + y) + Vec2(i + 0.5, j + 0.5) / samples_;
-        const Found place = is_on_chart(view, at, own)
-                                ? sighted(view, x * samples_ + i, y * samples_ + j)
-                                : sought(view, nearest.nearest(at));
-        if (place.how == Finding::kNone) continue;
-        mean.light += sampler_.sample(place.face, place.point, view.grid.step, view.lens);
-        if (normals_) mean.normal += normals_->at(place.face, place.point);
-        ++found, seen += place.how == Finding::kSeen;
+        const Finding how = is_on_chart(view, at, own)
+                                ? sighted(view, x * samples_ + i, y * samples_ + j, mean)
+                                : sought(view, nearest.nearest(at), mean);
+        found += how != Finding::kNone, seen += how == Finding::kSeen;
       }
     if (found == 0) return Finding::kNone;
     mean.light /= static_cast<float>(found);
@@ -257,27 +269,59 @@ class Painter {
                        [&](const Corners& t) { return t.holds(at); });
   }
 
-  /// What a sample of the window's grid shows.
-  Found sighted(const View& view, int x, int y) const {
-    const Vec2 q = view.grid.begin + view.grid.step * Vec2(x, y);
-    const Vec3 place = view.chart.lift(q);
-    const Sighting& s = view.sightings[view.grid.index(x, y)];
-    if (s.face >= 0) return {Finding::kSeen, s.face, place + s.offset * view.chart.normal};
-    if (!view.sight.may_be_near(q)) return {};
-    return probe_.beside(place, view.chart.normal, reach_, view.holes);
+  /// Adds what a sample of the window's grid shows.
+  Finding sighted(View& view, int x, int y, Texel& sum) const {
+    const int face = view.sightings[view.grid.index(x, y)].face;
+    if (face >= 0) return show(view, face, view.panes.of(face).weight(Vec2(x, y)), sum);
+    const Vec2 q = view.grid.at(x, y);
+    if (!view.sight.may_be_near(q)) return Finding::kNone;
+    if (view.together > 1) return beside(view, x, y, sum);
+    return show(view, found_beside(view, q), sum);
   }
 
-  /// What a place between the samples shows; in texels of the atlas.
-  Found sought(const View& view, const Vec2& at) const {
+  /// Samples that lie together show the same face beside them, each its own place of it.
+  Finding beside(View& view, int x, int y, Texel& sum) const {
+    const int n = view.together, columns = (view.grid.columns + n - 1) / n;
+    int& face = view.faces_beside[static_cast<std::size_t>(y / n) * columns + x / n];
+    if (face == kUnasked)
+      face = found_beside(view, view.grid.at(x / n * n + n / 2, y / n * n + n / 2)).face;
+    if (face < 0) return Finding::kNone;
+    const Vec3 weight = view.panes.of(face).weight(Vec2(x, y)).cwiseMax(0);
+    show(view, face, weight / weight.sum(), sum);
+    return Finding::kNearest;
+  }
+
+  Found found_beside(View& view, const Vec2& q) const {
+    return probe_.beside(view.chart.lift(q), view.chart.normal, reach_, view.holes, view.nearest);
+  }
+
+  /// Adds what a place between the samples shows; in texels of the atlas.
+  Finding sought(View& view, const Vec2& at, Texel& sum) const {
     const Vec2 begin(view.rect.x + kGutter, view.rect.y + kGutter);
-    return probe_.find(view.chart.lift((at - begin) * atlas_.texel), view.chart.normal, reach_,
-                       view.holes);
+    const Vec2 q = (at - begin) * atlas_.texel;
+    const Vec2 on_grid = (q - view.grid.begin) / view.grid.step;
+    const int face = view.holes ? -1 : view.panes.about(on_grid, view.sightings, reach_);
+    if (face >= 0) return show(view, face, view.panes.of(face).weight(on_grid), sum);
+    return show(view, probe_.find(view.chart.lift(q), view.chart.normal, reach_, view.holes), sum);
   }
 
-  /// What little is known of a chart is no picture of it.
-  void forget(const PackedRect& r) {
-    for (int y = r.y; y < r.y + r.height; ++y)
-      std::fill_n(&is_known_[static_cast<std::size_t>(y) * atlas_.width + r.x], r.width, 0);
+  /// Adds what a face shows at a place along the normal, by the weights of its corners.
+  Finding show(View& view, int face, const Vec3& weight, Texel& sum) const {
+    sum.light += view.panes.of(face).look.at(weight);
+    if (normals_) {
+      const Face& f = source_.faces[static_cast<std::size_t>(face)];
+      sum.normal += normals_->at(face, weight[0] * source_.vertices[f[0]] +
+                                           weight[1] * source_.vertices[f[1]] +
+                                           weight[2] * source_.vertices[f[2]]);
+    }
+    return Finding::kSeen;
+  }
+
+  Finding show(View& view, const Found& found, Texel& sum) const {
+    if (found.how == Finding::kNone) return found.how;
+    sum.light += sampler_.sample(found.face, found.point, view.grid.step, view.lens);
+    if (normals_) sum.normal += normals_->at(found.face, found.point);
+    return found.how;
   }
 
   static bool is_hardly_seen(const Tally& t) {
@@ -300,16 +344,20 @@ class Painter {
 
   bool is_wall(std::size_t chart) const { return std::abs(charts_[chart].normal.z()) < kUpright; }
 
-  /// What is far from all that is seen has its chart's mean, or the building's.
+  /// What is far from all that is seen has its chart's mean, or the building's. What little is
+  /// known of a chart is no picture of it.
   void fill(const std::vector<Tally>& of_chart, const Tally& total, Raster& image) {
     const Light mean = mean_of(total, Light::Constant(0.5f));
     const std::array<Light, 2> of_kind = means(of_chart, mean);
     parallel_for(charts_.size(), [&](std::size_t c) {
       const PackedRect& r = atlas_.rects[c];
       const bool is_told = !is_hardly_seen(of_chart[c]);
-      if (!is_told) forget(r);
-      push_pull(image, is_known_, {r.x, r.y, r.width, r.height}, kCarried / atlas_.texel,
-                is_told ? mean_of(of_chart[c], of_kind[is_wall(c)]) : of_kind[is_wall(c)]);
+      const Window w{r.x, r.y, r.width, r.height};
+      if (is_told)
+        push_pull(image, is_known_, w, kCarried / atlas_.texel,
+                  mean_of(of_chart[c], of_kind[is_wall(c)]));
+      else
+        fill_evenly(image, w, of_kind[is_wall(c)]);
     });
     std::vector<std::uint8_t> is_taken(is_known_.size(), 0);
     for (const PackedRect& r : atlas_.rects)

@@ -1,6 +1,7 @@
 // Inside room `bake` only: facets as rectangles, and rectangles in an atlas.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/geometry.h"
@@ -17,6 +18,12 @@ struct Chart {
   double width = 0, height = 0;                      ///< metres along right and down; width no less
 
   Vec2 flat(const Vec3& p) const { return {(p - origin).dot(right), (p - origin).dot(down)}; }
+  /// How a normal stands on it: x right, y up, z outward; what turns away from it, as on a reveal,
+  /// lies in its plane. Unit.
+  Vec3 turned(const Vec3& n) const {
+    const Vec3 own(n.dot(right), -n.dot(down), std::max(0.0, n.dot(normal)));
+    return own.norm() > 0 ? own.normalized() : Vec3(Vec3::UnitZ());
+  }
   Vec3 lift(const Vec2& q) const { return origin + q.x() * right + q.y() * down; }
 };
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 
 namespace colod::bake {
 
@@ -35,13 +36,14 @@ void saturate(Level& level) {
 Level first_level(const Raster& raster, const std::vector<std::uint8_t>& is_known,
                   const Window& w) {
   Level level = half_of(w.width, w.height);
-  for (int y = 0; y < w.height; ++y)
-    for (int x = 0; x < w.width; ++x) {
-      if (!is_known[static_cast<std::size_t>(w.y + y) * raster.width + w.x + x]) continue;
-      const std::uint8_t* p = raster.at(w.x + x, w.y + y);
-      level.at(x / 2, y / 2) +=
-          Eigen::Vector4f(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]), 1);
-    }
+  for (int y = 0; y < w.height; ++y) {
+    const std::uint8_t* known = &is_known[static_cast<std::size_t>(w.y + y) * raster.width + w.x];
+    const std::uint8_t* p = raster.at(w.x, w.y + y);
+    Eigen::Vector4f* sums = &level.at(0, y / 2);
+    for (int x = 0; x < w.width; ++x, p += 3)
+      if (known[x])
+        sums[x / 2] += Eigen::Vector4f(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]), 1);
+  }
   saturate(level);
   return level;
 }
@@ -76,7 +78,7 @@ void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const 
     for (int y = 0; y < levels[l].height; ++y)
       for (int x = 0; x < levels[l].width; ++x) {
         Eigen::Vector4f& own = levels[l].at(x, y);
-        own += (1 - own[3]) * between(levels[l + 1], x, y);
+        if (own[3] < 1) own += (1 - own[3]) * between(levels[l + 1], x, y);
       }
   for (int y = 0; y < w.height; ++y)
     for (int x = 0; x < w.width; ++x) {
@@ -84,6 +86,12 @@ void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const 
       const Eigen::Vector4f light = between(levels[0], x, y);
       for (int c = 0; c < 3; ++c) raster.at(w.x + x, w.y + y)[c] = to_srgb(light[c]);
     }
+}
+
+void fill_evenly(Raster& raster, const Window& w, const Light& light) {
+  const std::array rgb{to_srgb(light[0]), to_srgb(light[1]), to_srgb(light[2])};
+  for (int y = w.y; y < w.y + w.height; ++y)
+    for (int x = w.x; x < w.x + w.width; ++x) std::ranges::copy(rgb, raster.at(x, y));
 }
 
 }  // namespace colod::bake

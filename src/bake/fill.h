@@ -20,4 +20,7 @@ struct Window {
 void push_pull(Raster& raster, const std::vector<std::uint8_t>& is_known, const Window& window,
                double reach, const Light& far);
 
+/// Gives all of a window one colour.
+void fill_evenly(Raster& raster, const Window& window, const Light& light);
+
 }  // namespace colod::bake

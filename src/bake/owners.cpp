@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/flat.h"
+#include "spans.h"
 
 namespace colod::bake {
 
@@ -36,6 +37,52 @@ bool is_beyond(const std::array<Line, 3>& sides, const Vec2& q, double distance)
   });
 }
 
+/// The rows of a window that a triangle comes to within the border.
+Span rows_of(const Window& w, const Corners& c) {
+  const auto from = [&](double v) {
+    return std::clamp(static_cast<int>(std::floor(v)) - w.y, 0, w.height);
+  };
+  const auto [least, most] = std::minmax({c.at[0].y(), c.at[1].y(), c.at[2].y()});
+  return {from(least - kBorder), from(most + kBorder + 1)};
+}
+
+Vec2 middle_of(const Window& w, int x, int y) { return {w.x + x + 0.5, w.y + y + 0.5}; }
+
+/// Gives a triangle the texels that it holds the middle of, and no earlier one does.
+void fill_inside(const Window& w, const Corners& c, std::size_t t, std::vector<Owner>& out) {
+  const Span rows = rows_of(w, c);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    Span span{0, w.width};
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 along = c.at[(k + 1) % 3] - c.at[k];
+      span.narrow(cross(along, middle_of(w, 0, y) - c.at[k]), -along.y());
+    }
+    span.shrink([&](int x) { return c.holds(middle_of(w, x, y)); });
+    for (int x = span.begin; x < span.end; ++x) {
+      Owner& own = out[static_cast<std::size_t>(y) * w.width + x];
+      if (own.triangle < 0) own = {static_cast<int>(t), 0};
+    }
+  }
+}
+
+/// Gives it the texels of no triangle that it is the nearest to.
+void fill_border(const Window& w, const Corners& c, std::size_t t, std::vector<Owner>& out) {
+  const std::array<Line, 3> sides = lines(c);
+  const Span rows = rows_of(w, c);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    Span span{0, w.width};
+    for (const Line& side : sides)
+      span.narrow(side.normal.dot(middle_of(w, 0, y)) - side.offset + kBorder, side.normal.x());
+    for (int x = span.begin; x < span.end; ++x) {
+      Owner& own = out[static_cast<std::size_t>(y) * w.width + x];
+      const Vec2 middle = middle_of(w, x, y);
+      if (own.distance <= 0 || is_beyond(sides, middle, own.distance)) continue;
+      const double d = (c.nearest(middle) - middle).norm();
+      if (d < own.distance) own = {static_cast<int>(t), d};
+    }
+  }
+}
+
 }  // namespace
 
 bool Corners::holds(const Vec2& q) const {
@@ -60,28 +107,8 @@ Vec2 Corners::nearest(const Vec2& q) const {
 
 std::vector<Owner> owners(const Window& w, const std::vector<Corners>& triangles) {
   std::vector<Owner> out(static_cast<std::size_t>(w.width) * w.height);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& at = triangles[t].at;
-    const std::array<Line, 3> sides = lines(triangles[t]);
-    const Vec2 least = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
-    const Vec2 most = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
-    const auto from = [](double v, int begin, int n) {
-      return std::clamp(static_cast<int>(std::floor(v)) - begin, 0, n);
-    };
-    const int x0 = from(least.x() - kBorder, w.x, w.width);
-    const int x1 = from(most.x() + kBorder + 1, w.x, w.width);
-    const int y0 = from(least.y() - kBorder, w.y, w.height);
-    const int y1 = from(most.y() + kBorder + 1, w.y, w.height);
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) {
-        Owner& own = out[static_cast<std::size_t>(y) * w.width + x];
-        if (own.distance <= 0) continue;
-        const Vec2 middle(w.x + x + 0.5, w.y + y + 0.5);
-        if (is_beyond(sides, middle, own.distance)) continue;
-        const double d = (triangles[t].nearest(middle) - middle).norm();
-        if (d < own.distance) own = {static_cast<int>(t), d};
-      }
-  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) fill_inside(w, triangles[t], t, out);
+  for (std::size_t t = 0; t < triangles.size(); ++t) fill_border(w, triangles[t], t, out);
   return out;
 }
 

@@ -14,8 +14,11 @@ constexpr double kNearest = 0.25;  ///< metres: a nearest point farther away is 
                                    ///< of what is seen, as below an eaves without walls
 constexpr double kCarried = 0.5;   ///< metres that a colour is carried into what nobody saw: more
                                    ///< looks smeared, less leaves specks of the mean in windows
-constexpr int kMostLayers = 4;     ///< surfaces that a ray passes that do not agree
-constexpr double kLift = 2e-3;     ///< metres before a facet where a ray begins, against rounding
+constexpr double kTogether = 0.04;  ///< metres: samples so close show the same face beside them …
+constexpr int kMostTogether = 4;    ///< … if no more than so many lie along a side
+constexpr int kMostLayers = 4;      ///< surfaces that a ray passes that do not agree
+constexpr double kLift = 2e-3;      ///< metres before a facet where a ray begins, against rounding
+constexpr double kOnEdge = 1e-9;  ///< of a triangle's area: places on a shared edge belong to both
 constexpr double kOneSample = 1.5;   ///< source texels a texel may cover with one sample
 constexpr int kMostSamples = 16;     ///< along each side of a texel
 constexpr int kNeighbours = 6;       ///< of a point, that tell how dense the cloud is about it

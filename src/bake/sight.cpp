@@ -8,14 +8,13 @@
 
 #include "core/flat.h"
 #include "parameters.h"
+#include "spans.h"
 
 namespace colod::bake {
 
 using namespace parameters::bake;
 
 namespace {
-
-constexpr double kOnEdge = 1e-9;  // of a triangle's area: places on a shared edge belong to both
 
 /// Of n that are kNearest wide, the one that holds a place or is nearest to it.
 int cell(double metres, int n) {
@@ -97,23 +96,32 @@ void Sight::draw(int face, const SampleGrid& grid, const Probe::Holes& is_hole,
   // corner across.
   std::array<Vec2, 3> side;
   for (std::size_t k = 0; k < 3; ++k) side[k] = at[(k + 1) % 3] - at[k];
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) {
-      std::array<double, 3> weight;
-      for (std::size_t k = 0; k < 3; ++k) weight[k] = cross(side[k], Vec2(x, y) - at[k]);
-      if (std::min({weight[0], weight[1], weight[2]}) < -kOnEdge * area) continue;
-      const double offset =
-          (weight[1] * c[0].z() + weight[2] * c[1].z() + weight[0] * c[2].z()) / area;
+  const auto weight = [&](std::size_t k, double x, double y) {
+    return cross(side[k], Vec2(x, y) - at[k]);
+  };
+  const Vec3 depth = Vec3(c[2].z(), c[0].z(), c[1].z()) / area;  // of the corners across
+  const double rate = -(depth[0] * side[0].y() + depth[1] * side[1].y() + depth[2] * side[2].y());
+  for (int y = y0; y < y1; ++y) {
+    Span span{x0, x1};
+    for (std::size_t k = 0; k < 3; ++k) span.narrow(weight(k, 0, y), -side[k].y());
+    // Weights grow or fall along a row, also as they are rounded: its places lie together.
+    span.shrink([&](int x) {
+      return std::min({weight(0, x, y), weight(1, x, y), weight(2, x, y)}) >= -kOnEdge * area;
+    });
+    const double first = depth[0] * weight(0, span.begin, y) + depth[1] * weight(1, span.begin, y) +
+                         depth[2] * weight(2, span.begin, y);
+    for (int x = span.begin; x < span.end; ++x) {
+      const double offset = first + (x - span.begin) * rate;
       Sighting& own = out[grid.index(x, y)];
       const double known = own.face >= 0 ? std::abs(own.offset) : reach_;
       if (!(std::abs(offset) < known)) continue;
       if (is_hole) {
-        const Vec3 place =
-            chart_->lift(grid.begin + grid.step * Vec2(x, y)) + offset * chart_->normal;
+        const Vec3 place = chart_->lift(grid.at(x, y)) + offset * chart_->normal;
         if (is_hole(face, place)) continue;
       }
       own = {face, static_cast<float>(offset)};
     }
+  }
 }
 
 }  // namespace colod::bake

@@ -20,6 +20,7 @@ struct SampleGrid {
   double step;
   int columns, rows;
 
+  Vec2 at(int x, int y) const { return begin + step * Vec2(x, y); }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * columns + x; }
 };
 
@@ -37,6 +38,9 @@ class Sight {
   /// False: nothing that agrees lies within kNearest of a place of the chart's plane, whatever way.
   bool may_be_near(const Vec2& q) const;
 
+  /// A face's corners: places on the chart, and metres along the normal.
+  std::array<Vec3, 3> corners(int face) const;
+
  private:
   /// A face and the box of its shadow on the chart.
   struct Candidate {
@@ -44,8 +48,6 @@ class Sight {
     Eigen::Vector2f least, most;
   };
   void mark_near(const Vec2& least, const Vec2& most);
-  /// Its corners: places on the chart, and metres along the normal.
-  std::array<Vec3, 3> corners(int face) const;
   void draw(int face, const SampleGrid& grid, const Probe::Holes& is_hole,
             std::vector<Sighting>& out) const;
 

@@ -61,7 +61,7 @@ class SrgbTable {
     if (!(linear > 0)) return 0;
     if (!(linear < 1)) return 255;
     std::size_t code = starts_[static_cast<std::size_t>(linear * kSteps)];
-    while (code < 255 && borders_[code + 1] <= linear) ++code;
+    code += code < 255 && borders_[code + 1] <= linear;
     return static_cast<std::uint8_t>(code);
   }
 
@@ -69,8 +69,8 @@ class SrgbTable {
   static constexpr std::size_t kSteps = 4096;
   std::array<float, 256> linear_;
   std::array<float, 256> borders_;  // from which linear value on a component is i, not i − 1
-  std::array<std::uint8_t, kSteps> starts_;  // of the linear value i / kSteps the component; those
-                                             // of greater ones are few steps on
+  std::array<std::uint8_t, kSteps> starts_;  // of the linear value i / kSteps the component; up
+                                             // to the next one it grows by one at most
 };
 extern const SrgbTable kSrgb;
 

@@ -90,6 +90,7 @@ struct Slot {
   std::mutex mutex;
   bool is_known = false;
   std::array<int, 2> size = {0, 0};
+  bool has_alpha = false;
   ImageCache::Entry entry;
   std::uint64_t used = 0;  // when; under the cache's lock
   std::size_t bytes = 0;   // held for it; under the cache's lock
@@ -146,6 +147,7 @@ ImageCache::Entry ImageCache::get(const ImagePlace& place) const {
   try {
     DecodedImage decoded = decode_image(read_image(place, impl_->budget), impl_->budget);
     slot->size = {decoded.raster.width, decoded.raster.height};
+    slot->has_alpha = !decoded.raster.alpha.empty();
     slot->entry.problem = decoded.remark;
     slot->entry.is_lost = decoded.is_damaged;
     slot->entry.pyramid = build(std::move(decoded.raster));
@@ -162,6 +164,7 @@ void ImageCache::put(const ImagePlace& place, Raster raster) {
   const std::lock_guard lock(slot->mutex);
   slot->is_known = true;
   slot->size = {raster.width, raster.height};
+  slot->has_alpha = !raster.alpha.empty();
   slot->entry = {build(std::move(raster)), "", false};
 }
 
@@ -177,6 +180,13 @@ ImageCache::Facts ImageCache::facts(const ImagePlace& place) const {
   get(place);
   const std::lock_guard lock(slot->mutex);
   return known();
+}
+
+bool ImageCache::has_alpha(const ImagePlace& place) const {
+  facts(place);
+  const std::shared_ptr<Slot> slot = impl_->slot(place);
+  const std::lock_guard lock(slot->mutex);
+  return slot->has_alpha;
 }
 
 }  // namespace colod

@@ -49,6 +49,9 @@ class ImageCache {
     bool is_lost = false;
   };
   Facts facts(const ImagePlace& place) const;
+  /// Whether a pixel of it is not opaque; false where it cannot be read. Decodes it as `facts`
+  /// does.
+  bool has_alpha(const ImagePlace& place) const;
 
  private:
   struct Impl;

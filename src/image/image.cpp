@@ -105,9 +105,24 @@ std::vector<Span> spans(int n, int half) {
   return out;
 }
 
+/// Where each pixel is the mean of four opaque ones: the same sums, in the same order.
+Raster halve_even(const Raster& fine) {
+  Raster out(fine.width / 2, fine.height / 2);
+  std::uint8_t* to = out.rgb.data();
+  for (int y = 0; y < out.height; ++y) {
+    const std::uint8_t *upper = fine.at(0, 2 * y), *lower = fine.at(0, 2 * y + 1);
+    for (int x = 0; x < out.width; ++x, upper += 6, lower += 6)
+      for (int c = 0; c < 3; ++c)
+        *to++ = to_srgb(0.25f * (to_linear(upper[c]) + to_linear(upper[c + 3]) +
+                                 to_linear(lower[c]) + to_linear(lower[c + 3])));
+  }
+  return out;
+}
+
 }  // namespace
 
 Raster halve(const Raster& fine) {
+  if (fine.alpha.empty() && fine.width % 2 == 0 && fine.height % 2 == 0) return halve_even(fine);
   Raster out(std::max(1, fine.width / 2), std::max(1, fine.height / 2));
   if (!fine.alpha.empty()) out.alpha.resize(out.rgb.size() / 3);
   const std::vector<Span> columns = spans(fine.width, out.width);

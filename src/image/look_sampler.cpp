@@ -21,8 +21,15 @@ int wrapped(int i, int n, Wrap wrap) {
 
 /// Coordinates far outside keep their place within a period.
 double within_period(double u, Wrap wrap) {
+  if (u >= 0 && u < 2) return u;
   if (wrap == Wrap::kClamp) return std::clamp(u, -1.0, 2.0);
   return u - 2 * std::floor(u / 2);
+}
+
+/// The same as std::floor, of what an int holds.
+int floor_of(double v) {
+  const int i = static_cast<int>(v);
+  return i - (v < i);
 }
 
 /// Also what is no number is none.
@@ -37,23 +44,38 @@ struct Shown {
   float alpha = 0;
 };
 
+/// A place between four pixels: the upper left one, and how far on it is.
+struct Between {
+  int x, y;
+  float fx, fy;
+
+  Between(const Raster& raster, const Vec2& uv, const Material& m) {
+    const double right = within_period(uv.x(), m.wrap_u) * raster.width - 0.5;
+    const double down = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
+    x = floor_of(right), y = floor_of(down);
+    fx = static_cast<float>(right - x), fy = static_cast<float>(down - y);
+  }
+  /// Of the four, column i and row j, 0 or 1.
+  float weight(int i, int j) const { return (i ? fx : 1 - fx) * (j ? fy : 1 - fy); }
+};
+
+Light light_of(const std::uint8_t* p) {
+  return {to_linear(p[0]), to_linear(p[1]), to_linear(p[2])};
+}
+
 /// The colour of what is transparent does not count, where the material lets it be seen through.
-Shown bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
-  const double x = within_period(uv.x(), m.wrap_u) * raster.width - 0.5;
-  const double y = within_period(uv.y(), m.wrap_v) * raster.height - 0.5;
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
-  const std::array px{wrapped(x0, raster.width, m.wrap_u), wrapped(x0 + 1, raster.width, m.wrap_u)};
-  const std::array py{wrapped(y0, raster.height, m.wrap_v),
-                      wrapped(y0 + 1, raster.height, m.wrap_v)};
+Shown bilinear_wrapped(const Raster& raster, const Between& at, const Material& m) {
+  const std::array px{wrapped(at.x, raster.width, m.wrap_u),
+                      wrapped(at.x + 1, raster.width, m.wrap_u)};
+  const std::array py{wrapped(at.y, raster.height, m.wrap_v),
+                      wrapped(at.y + 1, raster.height, m.wrap_v)};
   const bool is_cut = m.cutoff > 0 && !raster.alpha.empty();
   Light all = Light::Zero(), opaque = Light::Zero();
   float alpha = 0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const std::uint8_t* p = raster.at(px[i], py[j]);
-      const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-      const Light light(to_linear(p[0]), to_linear(p[1]), to_linear(p[2]));
+      const float weight = at.weight(i, j);
+      const Light light = light_of(raster.at(px[i], py[j]));
       all += weight * light;
       if (!is_cut) continue;
       const float own = raster.alpha_at(px[i], py[j]);
@@ -63,14 +85,15 @@ Shown bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
   return {alpha > 0 ? Light(opaque / alpha) : all, alpha};
 }
 
-Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Material& m) {
-  const double last = static_cast<double>(pyramid.levels.size()) - 1;
-  level = std::clamp(level, 0.0, last);
-  const auto fine = static_cast<std::size_t>(level);
-  const auto share = static_cast<float>(level - static_cast<double>(fine));
-  const Light a = bilinear(pyramid.levels[fine], uv, m).light;
-  if (share < 1e-3f) return a;
-  return (1 - share) * a + share * bilinear(pyramid.levels[fine + 1], uv, m).light;
+Light bilinear(const Raster& raster, const Vec2& uv, const Material& m) {
+  const Between at(raster, uv, m);
+  const bool is_within =
+      at.x >= 0 && at.y >= 0 && at.x + 1 < raster.width && at.y + 1 < raster.height;
+  if (!is_within || (m.cutoff > 0 && !raster.alpha.empty()))
+    return bilinear_wrapped(raster, at, m).light;
+  const std::uint8_t *upper = raster.at(at.x, at.y), *lower = raster.at(at.x, at.y + 1);
+  return at.weight(0, 0) * light_of(upper) + at.weight(1, 0) * light_of(upper + 3) +
+         at.weight(0, 1) * light_of(lower) + at.weight(1, 1) * light_of(lower + 3);
 }
 
 }  // namespace
@@ -78,7 +101,7 @@ Light trilinear(const Pyramid& pyramid, const Vec2& uv, double level, const Mate
 const Pyramid* Lens::look(const ImagePlace& place, int number) {
   if (held_[0].number == number) return held_[0].pyramid.get();
   std::swap(held_[0], held_[1]);
-  if (held_[0].number != number) held_[0] = {number, cache_.get(place).pyramid};
+  if (held_[0].number != number) held_[0] = {number, cache_.get(place).pyramid}, ++changes_;
   return held_[0].pyramid.get();
 }
 
@@ -96,8 +119,10 @@ LookSampler::LookSampler(const Mesh& mesh, const Appearance& look, const ImageCa
   for (const ImagePlace& place : look.images) facts.push_back(cache.facts(place));
   measure_texels(facts);
   has_images_ = std::ranges::any_of(facts, [](const auto& image) { return image.width > 0; });
-  has_holes_ = std::ranges::any_of(look.materials,
-                                   [](const Material& m) { return m.image >= 0 && m.cutoff > 0; });
+  has_holes_ = std::ranges::any_of(look.materials, [&](const Material& m) {
+    return m.image >= 0 && m.cutoff > 0 &&
+           cache.has_alpha(look.images[static_cast<std::size_t>(m.image)]);
+  });
   const std::vector<Wear> wear = find_wear();
   for (std::size_t i = 0; i < look.images.size(); ++i) {
     if (wear[i].faces == 0) continue;
@@ -173,36 +198,60 @@ bool LookSampler::is_hole(int face, const Vec3& point, Lens& lens) const {
   const Pyramid* pyramid = lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
   if (!pyramid || pyramid->levels[0].alpha.empty()) return false;
   const Vec2 uv = place_of(f, lens.weights(mesh_, face, point));
-  return is_place(uv.cast<float>()) && bilinear(pyramid->levels[0], uv, m).alpha < m.cutoff;
+  return is_place(uv.cast<float>()) &&
+         bilinear_wrapped(pyramid->levels[0], Between(pyramid->levels[0], uv, m), m).alpha <
+             m.cutoff;
+}
+
+Light FaceLook::at(const Vec3& weight) const {
+  Light light = Light::Ones();
+  if (colors_) {
+    light.setZero();
+    for (int c = 0; c < 3; ++c)
+      light += static_cast<float>(std::clamp(weight[c], 0.0, 1.0)) *
+               light_of((*colors_)[static_cast<std::size_t>(c)].data());
+  }
+  light = light.cwiseProduct(tint_);
+  if (!fine_) return light;
+  const Vec2 uv = weight[0] * (*uvs_)[0].cast<double>() + weight[1] * (*uvs_)[1].cast<double>() +
+                  weight[2] * (*uvs_)[2].cast<double>();
+  Light shown = bilinear(*fine_, uv, *material_);
+  if (coarse_) shown = (1 - share_) * shown + share_ * bilinear(*coarse_, uv, *material_);
+  return light.cwiseProduct(shown);
+}
+
+FaceLook LookSampler::look_at(int face, double spacing, Lens& lens) const {
+  constexpr double kLeastShare = 1e-3;
+  const auto f = static_cast<std::size_t>(face);
+  FaceLook look;
+  if (!look_.colors.empty()) look.colors_ = &look_.colors[f];
+  const int number = look_.face_material.empty() ? -1 : look_.face_material[f];
+  if (number < 0) return look;
+  const Material& m = look_.materials[static_cast<std::size_t>(number)];
+  look.tint_ = Light(m.color[0], m.color[1], m.color[2]);
+  const Pyramid* pyramid =
+      m.image < 0 ? nullptr : lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
+  if (!pyramid) return look;
+  const std::vector<Raster>& levels = pyramid->levels;
+  if (!has_place(f)) {
+    look.tint_ = look.tint_.cwiseProduct(light_of(levels.back().at(0, 0)));
+    return look;
+  }
+  const double own = texel_of_face_[f];
+  double level = own > 0 && spacing > 0 ? std::log2(spacing / own) : 0;
+  level = std::clamp(std::min(level, std::log2(kMostTexels)), 0.0,
+                     static_cast<double>(levels.size()) - 1);
+  const auto fine = static_cast<std::size_t>(level);
+  look.share_ = static_cast<float>(level - static_cast<double>(fine));
+  look.fine_ = &levels[fine];
+  if (look.share_ >= kLeastShare) look.coarse_ = &levels[fine + 1];
+  look.material_ = &m, look.uvs_ = &look_.uvs[f];
+  return look;
 }
 
 Light LookSampler::sample(int face, const Vec3& point, double spacing, Lens& lens) const {
-  const auto f = static_cast<std::size_t>(face);
-  Light light = Light::Ones();
   const Vec3 weight = lens.weights(mesh_, face, point);
-  if (!look_.colors.empty()) {
-    light.setZero();
-    for (int c = 0; c < 3; ++c) {
-      const Rgb& rgb = look_.colors[f][static_cast<std::size_t>(c)];
-      light += static_cast<float>(std::clamp(weight[c], 0.0, 1.0)) *
-               Light(to_linear(rgb[0]), to_linear(rgb[1]), to_linear(rgb[2]));
-    }
-  }
-  const int number = look_.face_material.empty() ? -1 : look_.face_material[f];
-  if (number < 0) return light;
-  const Material& m = look_.materials[static_cast<std::size_t>(number)];
-  light = light.cwiseProduct(Light(m.color[0], m.color[1], m.color[2]));
-  const Pyramid* pyramid =
-      m.image < 0 ? nullptr : lens.look(look_.images[static_cast<std::size_t>(m.image)], m.image);
-  if (!pyramid) return light;
-  const Vec2 uv = place_of(f, weight);
-  if (!is_place(uv.cast<float>())) {
-    const std::uint8_t* mean = pyramid->levels.back().at(0, 0);
-    return light.cwiseProduct(Light(to_linear(mean[0]), to_linear(mean[1]), to_linear(mean[2])));
-  }
-  const double own = texel_of_face_[f];
-  const double level = own > 0 && spacing > 0 ? std::log2(spacing / own) : 0;
-  return light.cwiseProduct(trilinear(*pyramid, uv, std::min(level, std::log2(kMostTexels)), m));
+  return look_at(face, spacing, lens).at(weight);
 }
 
 }  // namespace colod

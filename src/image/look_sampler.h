@@ -21,6 +21,8 @@ class Lens {
   explicit Lens(const ImageCache& cache) : cache_(cache) {}
   /// Null: it cannot be read.
   const Pyramid* look(const ImagePlace& place, int number);
+  /// How often an image was let go of: pointers to it are good as long as this stays.
+  int changes() const { return changes_; }
   /// How much of each corner of a face a point of its plane is.
   Vec3 weights(const Mesh& mesh, int face, const Vec3& point);
 
@@ -31,10 +33,30 @@ class Lens {
   };
   const ImageCache& cache_;
   std::array<Held, 2> held_;
+  int changes_ = 0;
   // Of the face that was asked for last, since the next texel mostly shows it, too.
   const Mesh* mesh_ = nullptr;
   int face_ = -1;
   CornerWeights weights_;
+};
+
+/// What a face looks like, worked out once for many places of it. It points into the mesh's look
+/// and into an image that a lens holds.
+class FaceLook {
+ public:
+  /// `weight`: how much of each corner a place is, together 1.
+  Light at(const Vec3& weight) const;
+
+ private:
+  friend class LookSampler;
+
+  const std::array<Rgb, 3>* colors_ = nullptr;  // null: none
+  Light tint_ = Light::Ones();
+  const Material* material_ = nullptr;
+  const std::array<Vec2f, 3>* uvs_ = nullptr;
+  const Raster* fine_ = nullptr;  // null: no image, or the same everywhere
+  const Raster* coarse_ = nullptr;
+  float share_ = 0;  // of the coarser level
 };
 
 /// A mesh with its look. Keeps references to all that it is given.
@@ -46,9 +68,11 @@ class LookSampler {
   /// What a face looks like at a point of its plane; `spacing`: metres from one sample to the next.
   /// Where a face has an image and no coordinates, or none that are numbers, the image's mean.
   Light sample(int face, const Vec3& point, double spacing, Lens& lens) const;
+  /// The same for many places of a face: good until lens.changes() does.
+  FaceLook look_at(int face, double spacing, Lens& lens) const;
   /// Whether a place of a face is cut out by its image's transparency. Never where !has_holes().
   bool is_hole(int face, const Vec3& point, Lens& lens) const;
-  /// Whether a material is seen through where its image is transparent.
+  /// Whether a material is seen through where its image is transparent, and it is somewhere.
   bool has_holes() const { return has_holes_; }
   /// Metres, of the source's texels: the mean over its textured area; without images, of its faces.
   double texel() const { return texel_; }

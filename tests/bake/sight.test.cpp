@@ -96,7 +96,7 @@ TEST_CASE("what lies beyond the reach is not shown, and a hole shows what lies b
   for (const Sighting& s : Sight(far, Probe(far), own, 0.3).look(grid, {})) CHECK(s.face < 0);
 }
 
-TEST_CASE("where nothing that agrees is near no nearest place is asked for") {
+TEST_CASE("where nothing that agrees is near no nearest place is asked for, and none is missed") {
   const double side = GENERATE(1.0, 6.0);
   CAPTURE(side);
   const Mesh mesh = sheet(4, side / 3, 0, 0.1);  // at the lower left
@@ -104,9 +104,14 @@ TEST_CASE("where nothing that agrees is near no nearest place is asked for") {
   const Chart own = chart(side);
   const Sight sight(mesh, probe, own, 0.5);
   bool is_ever_far = false;
+  NearestPoint last;
   for (double y = 0; y <= side; y += side / 50)
     for (double x = 0; x <= side; x += side / 50) {
-      const Found found = probe.beside(own.lift({x, y}), own.normal, 0.5, {});
+      NearestPoint none;
+      const Found found = probe.beside(own.lift({x, y}), own.normal, 0.5, {}, none);
+      const Found again = probe.beside(own.lift({x, y}), own.normal, 0.5, {}, last);
+      CHECK(again.how == found.how);
+      CHECK((again.point - found.point).norm() < 1e-6);
       if (found.how != Finding::kNone) CHECK(sight.may_be_near({x, y}));
       is_ever_far |= !sight.may_be_near({x, y});
     }

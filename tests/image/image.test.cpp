@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 
 #include "image/cache.h"
@@ -187,6 +188,26 @@ TEST_CASE("half of the light is not half of the number") {
     CHECK(to_srgb(static_cast<float>(linear * (1 + 1e-5))) == i + 1);
   }
   CHECK((to_srgb(-1) == 0 && to_srgb(7) == 255 && to_srgb(NAN) <= 255));
+}
+
+TEST_CASE("images of even sides are halved as those that may have borders or holes") {
+  std::mt19937 random(3);
+  Raster plain(64, 38);
+  for (std::uint8_t& c : plain.rgb) c = static_cast<std::uint8_t>(random() % 256);
+  Raster opaque = plain;
+  opaque.alpha.assign(plain.rgb.size() / 3, 255);
+  CHECK(halve(plain).rgb == halve(opaque).rgb);
+}
+
+TEST_CASE("light becomes the component of sRGB that is nearest to it") {
+  for (int i = 0; i <= 1'000'000; ++i) {
+    const double light = i * 1e-6;
+    const double exact =
+        255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+    const double found = to_srgb(static_cast<float>(light));
+    if (std::abs(found - exact) > 0.5 + 1e-3) FAIL(light << " " << found << " " << exact);
+  }
+  for (int i = 0; i < 256; ++i) CHECK(to_srgb(to_linear(static_cast<std::uint8_t>(i))) == i);
 }
 
 TEST_CASE("rectangles are packed without overlap") {

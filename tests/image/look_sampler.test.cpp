@@ -90,3 +90,17 @@ TEST_CASE("coarse samples are the mean of what they cover, to four texels") {
   CHECK(s.red_at(0.5, 0.5, 1) == Approx(1.0 / 16).epsilon(0.1));
   CHECK(s.red_at(0.5, 0.5, 100) == Approx(1.0 / 16).epsilon(0.1));
 }
+
+TEST_CASE("only an image that is transparent somewhere has holes") {
+  Square s;
+  s.look.materials[0].cutoff = 0.5f;
+  CHECK_FALSE(LookSampler(s.mesh, s.look, s.cache).has_holes());
+  Raster fence(4, 4);
+  fence.alpha.assign(16, 255);
+  fence.alpha[5] = 0;
+  s.cache.put(missing_image("fence"), fence);
+  s.look.images[0] = missing_image("fence");
+  CHECK(LookSampler(s.mesh, s.look, s.cache).has_holes());
+  s.look.materials[0].cutoff = 0;
+  CHECK_FALSE(LookSampler(s.mesh, s.look, s.cache).has_holes());
+}
