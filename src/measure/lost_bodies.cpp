@@ -37,7 +37,9 @@ struct Body {
   double depth = 0;  ///< largest distance to the layer of its voxels
   double area = 0, far_area = 0, farthest = 0;
 
-  double required_depth(double volume) const { return std::min(kRoom, kDeep * std::cbrt(volume)); }
+  double required_depth(double volume, double grain) const {
+    return std::max(grain, std::min(kRoom, kDeep * std::cbrt(volume)));
+  }
 };
 
 /// Sets of voxels that are flagged, connected over sides; `body_of` gets their numbers.
@@ -144,14 +146,14 @@ std::vector<Place> look_about(const std::vector<SurfaceSample>& samples, const V
 
 /// What of the surface is about each body.
 void measure_bodies(const std::vector<Place>& places, const VoxelGrid& grid, double unit,
-                    std::vector<Body>& bodies) {
+                    double grain, std::vector<Body>& bodies) {
   for (const auto& [about, distance, is_inside] : places) {
     if (about.body < 0 || !about.is_open) continue;
     Body& body = bodies[about.body];
     const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
     body.area += unit;
     body.farthest = std::max(body.farthest, distance);
-    if (distance > kFar * body.required_depth(volume)) body.far_area += unit;
+    if (distance > kFar * body.required_depth(volume, grain)) body.far_area += unit;
   }
 }
 
@@ -173,7 +175,7 @@ LeftOut find_missed(const std::vector<Place>& places, double unit, double reach,
 
 }  // namespace
 
-Holdings weigh_layer(const Surface& source, const Mesh& layer) {
+Holdings weigh_layer(const Surface& source, const Mesh& layer, double grain) {
   const Box box = used_box(source.mesh);
   const VoxelGrid grid = make_grid(box);
   const RayScene layer_scene(layer);
@@ -194,12 +196,12 @@ Holdings weigh_layer(const Surface& source, const Mesh& layer) {
   const std::vector<Place> places =
       look_about(spread_over(source.mesh, grid.size), grid, is_solid, body_of, layer_scene, reach);
   const double unit = grid.size * grid.size, area = unit * static_cast<double>(places.size());
-  measure_bodies(places, grid, unit, bodies);
+  measure_bodies(places, grid, unit, grain, bodies);
   std::vector<char> is_lost(bodies.size(), 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const double volume = static_cast<double>(body.voxels.size()) * grid.volume();
-    if (volume < kLeastShare * out.whole || body.depth < body.required_depth(volume) ||
+    if (volume < kLeastShare * out.whole || body.depth < body.required_depth(volume, grain) ||
         body.far_area <= kMostly * body.area)
       continue;
     is_lost[i] = 1;

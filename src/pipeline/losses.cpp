@@ -10,6 +10,7 @@
 #include "core/flat.h"
 #include "measure/lost_bodies.h"
 #include "measure/scene_part.h"
+#include "relief/relief.h"
 #include "scene/left_out.h"
 
 namespace colod {
@@ -97,8 +98,9 @@ void weigh_finest(const Surface& source, Building& b) {
   forget_losses(b);
   if (b.layers.empty() || !b.layers.back().failure.empty()) return;
   const Mesh finest = b.layers.back().mesh.mesh();
-  const Holdings holdings =
-      b.source.is_mesh() ? weigh_layer(source, finest) : weigh_layer(roofs_of(source.mesh), finest);
+  const Holdings holdings = b.source.is_mesh()
+                                ? weigh_layer(source, finest, raster_cell(b.source.mesh))
+                                : weigh_layer(roofs_of(source.mesh), finest);
   b.solid = holdings.solid;
   double whole = holdings.whole;
   for (const LeftOut& l : b.left_out) whole += std::max(0.0, l.volume);

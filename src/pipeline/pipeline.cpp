@@ -43,7 +43,7 @@ constexpr const char* kSteppedByChoice =
 /// raster of heights, whose steps may look round; all else is freed of its ground and inside first.
 void find_planes(Building& b, const Options& o) {
   Stopwatch watch(b.timings.planes);
-  const bool is_of_heights = is_raster(b.source.mesh);
+  const bool is_of_heights = raster_cell(b.source.mesh) > 0;
   if (o.rules.has(Rule::kRelief) && (is_of_heights || find_rounds(b.source, o.rules).empty()))
     if (std::optional<Relief> relief = find_relief(b.source.mesh)) {
       b.planes = relief_planes(b.source, *std::move(relief));

@@ -177,7 +177,10 @@ Melting measure_melting(const Mesh& mesh) {
           raster_cell(mesh)};
 }
 
+}  // namespace relief
+
 double raster_cell(const Mesh& mesh) {
+  using namespace relief;
   if (mesh.faces.size() < kLeastRaster) return 0;
   std::vector<Shadow> shadows;
   std::vector<double> cells;
@@ -195,9 +198,5 @@ double raster_cell(const Mesh& mesh) {
   for (const Shadow& s : shadows) plan += s.twice, whole += s.is_half_of(cell) ? s.twice : 0;
   return other < kMostOther * area && whole > kWholeCells * plan ? cell : 0;
 }
-
-}  // namespace relief
-
-bool is_raster(const Mesh& mesh) { return relief::raster_cell(mesh) > 0; }
 
 }  // namespace colod

@@ -25,7 +25,4 @@ struct Melting {
 
 Melting measure_melting(const Mesh& mesh);
 
-/// Metres, of the squares of which most of the plan consists; 0: it is no raster.
-double raster_cell(const Mesh& mesh);
-
 }  // namespace colod::relief

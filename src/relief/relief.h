@@ -26,10 +26,10 @@ struct Relief {
   double noise = 0;               ///< metres: of its roofs
 };
 
-/// Whether a mesh is heights on a square grid, cut at its rim perhaps, as scene/cloud_surface.h
-/// makes of an airborne cloud and a GIS writes surface models: no more is known than roofs, and its
-/// walls are steps from cell to cell. O(faces).
-bool is_raster(const Mesh& mesh);
+/// Metres: side of the cells of a mesh that is heights on a square grid, cut at its rim perhaps, as
+/// scene/cloud_surface.h makes of an airborne cloud and a GIS writes surface models: no more is
+/// known than roofs, and its walls are steps from cell to cell. 0: it is none. O(faces).
+double raster_cell(const Mesh& mesh);
 
 /// `mesh` in its local frame (read/frame.h). None: it has more than one level above another, or its
 /// surface is known more exactly than this; of a raster only where it shows no roof. Deterministic.

@@ -104,6 +104,19 @@ TEST_CASE("no body is lost where a wall moved, a passage runs, or rooms and furn
   CHECK(weigh_layer(passage, passage).lost.empty());
 }
 
+TEST_CASE("steps as deep as the source's grain are no bodies, deeper ones are") {
+  for (const double grain : {0.5, 1.0, 4.0}) {
+    const auto shed_with = [&](double deep) {
+      return scaled(join(box_mesh({0, 0, 0}, {4, 3, 3}), box_mesh({4, 1, 0}, {4 + deep, 2, 3})),
+                    grain);
+    };
+    const Mesh shed = scaled(box_mesh({0, 0, 0}, {4, 3, 3}), grain);
+    CHECK(weigh_layer(shed_with(0.9), shed).lost.size() == 1);
+    CHECK(weigh_layer(shed_with(0.9), shed, grain).lost.empty());
+    CHECK(weigh_layer(shed_with(2), shed, grain).lost.size() == 1);
+  }
+}
+
 TEST_CASE("of open surface what is far from the layer is missed, of the inside nothing is") {
   for (const double size : {0.8, 1.0, 6.0}) {
     Mesh roofs;  // two roofs without walls, side by side
