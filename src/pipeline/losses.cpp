@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "core/flat.h"
 #include "measure/lost_bodies.h"
@@ -17,6 +18,10 @@ namespace colod {
 namespace {
 
 constexpr double kLevel = 0.5;  // upright component of a roof's normal at least
+
+/// Metres that the steps of a grid of heights stand off straight walls: the diagonal of a cell. 0:
+/// the source is none.
+double grain_of(const Mesh& source) { return std::numbers::sqrt2 * raster_cell(source); }
 
 /// What may be asked for of a cloud. Its outlines of steep planes are guesses from few points: of
 /// 72 airborne clouds they made most of what seemed to be missed.
@@ -99,7 +104,7 @@ void weigh_finest(const Surface& source, Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return;
   const Mesh finest = b.layers.back().mesh.mesh();
   const Holdings holdings = b.source.is_mesh()
-                                ? weigh_layer(source, finest, raster_cell(b.source.mesh))
+                                ? weigh_layer(source, finest, grain_of(b.source.mesh))
                                 : weigh_layer(roofs_of(source.mesh), finest);
   b.solid = holdings.solid;
   double whole = holdings.whole;

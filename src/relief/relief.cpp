@@ -290,10 +290,9 @@ std::optional<Relief> read_relief(const Mesh& mesh, const Melting& melting) {
   std::vector<std::vector<Piece>> pieces;
   for (Relief::Part& wall : walls_of(plan, pieces)) relief.parts.push_back(std::move(wall));
   share_out(mesh, plan, pieces, relief);
-  if (melting.raster > 0) return has_roof(relief) ? std::optional(std::move(relief)) : std::nullopt;
-  if (supported_share(mesh, relief) < kLeastSupport ||
-      explained_share(mesh, relief, melting.reach()) <
-          (melting.is_wide() ? kWideExplained : kExplained))
+  const double explained = melting.raster > 0 ? 0 : melting.is_wide() ? kWideExplained : kExplained;
+  if (!has_roof(relief) || supported_share(mesh, relief) < kLeastSupport ||
+      explained_share(mesh, relief, melting.reach()) < explained)
     return std::nullopt;
   return relief;
 }

@@ -32,7 +32,8 @@ struct Relief {
 double raster_cell(const Mesh& mesh);
 
 /// `mesh` in its local frame (read/frame.h). None: it has more than one level above another, or its
-/// surface is known more exactly than this; of a raster only where it shows no roof. Deterministic.
+/// surface is known more exactly than this, which no raster is; or it shows no roof or no walls, as
+/// terrain does. Deterministic.
 std::optional<Relief> find_relief(const Mesh& mesh);
 
 }  // namespace colod
