@@ -112,6 +112,7 @@ int serve(int, char** arguments, char** environment) {
 
 /// Takes the place of the C library's function, which a program's first instructions call with its
 /// main.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*init)(),
                                  void (*fini)(), void (*loader_fini)(), void* stack) {
   using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
