@@ -184,7 +184,7 @@ class Painter {
     Panes panes;
     int together;  ///< samples along each side of a square that show one face beside them
     std::vector<int> faces_beside;  ///< of each such square; −1: none
-    NearestPoint nearest;           ///< to the place that was asked for last
+    NearestInTurn nearest;
   };
 
   SampleGrid grid_of(const Task& task) const {
@@ -220,7 +220,7 @@ class Painter {
               Panes(sights_[c], grid, sampler_, lens),
               together(grid, holes),
               {},
-              {}};
+              probe_.in_turn()};
     if (view.together > 1) view.faces_beside.assign(view.sightings.size(), kUnasked);
     const std::vector<Owner> owners_of = owners(w, view.triangles);
     for (int y = 0; y < w.height; ++y)

@@ -44,18 +44,14 @@ Found Probe::find(const Vec3& p, const Vec3& normal, double reach, const Holes& 
   if (in && std::abs(in.distance - kLift) <= known)
     return {Finding::kSeen, in.triangle, p - (in.distance - kLift) * normal};
   if (out) return {Finding::kSeen, out.triangle, p + (out.distance - kLift) * normal};
-  NearestPoint none;
-  return beside(p, normal, reach, is_hole, none);
+  NearestInTurn nearest = in_turn();
+  return beside(p, normal, reach, is_hole, nearest);
 }
 
 Found Probe::beside(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole,
-                    NearestPoint& last) const {
-  const double about = std::min(reach, kNearest);
-  const bool has_last = last.triangle >= 0;
-  // No farther than what was found before, up to rounding.
-  const double within = has_last ? std::min(about, (p - last.point).norm() + kLift) : about;
-  const NearestPoint near = last = rays_.nearest(p, within);
-  if (near.triangle >= 0 && near.distance <= about && agrees(near.triangle, normal) &&
+                    NearestInTurn& nearest) const {
+  const NearestPoint near = nearest(p, std::min(reach, kNearest));
+  if (near.triangle >= 0 && agrees(near.triangle, normal) &&
       !(is_hole && is_hole(near.triangle, near.point)))
     return {Finding::kNearest, near.triangle, near.point};
   return {};

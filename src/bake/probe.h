@@ -22,11 +22,11 @@ class Probe {
   /// Passes on where `is_hole` says so of a face and a place on it; empty: nowhere.
   using Holes = std::function<bool(int face, const Vec3& point)>;
   Found find(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole = {}) const;
-  /// What is left where nothing lies along the normal: the nearest place about. `last`: the nearest
-  /// to a place close by, from which the search begins, or none; it becomes the nearest to this
-  /// one.
+  /// What is left where nothing lies along the normal: the nearest place about. `nearest` is one of
+  /// `in_turn`, for places that mostly lie near the one before.
   Found beside(const Vec3& p, const Vec3& normal, double reach, const Holes& is_hole,
-               NearestPoint& last) const;
+               NearestInTurn& nearest) const;
+  NearestInTurn in_turn() const { return NearestInTurn(rays_); }
   /// Whether a face looks as a facet with this normal does.
   bool agrees(int face, const Vec3& normal) const;
 

@@ -339,13 +339,14 @@ NearestPoint RayScene::nearest(const Vec3& query, double within) const {
   return impl_->answer(q);
 }
 
-NearestPoint NearestInTurn::operator()(const Vec3& query) {
+NearestPoint NearestInTurn::operator()(const Vec3& query, double within) {
   const RayScene::Impl& impl = *scene_.impl_;
   if (!impl.scene || !query.allFinite()) return {};
   NearestQuery q = impl.query_at(query);
   if (last_ >= 0) q.improve(static_cast<unsigned>(last_));
-  search(impl.scene, q.best, q);
-  last_ = q.triangle;
+  search(impl.scene, std::min(within, q.best), q);
+  if (q.best < kInfinity) last_ = q.triangle;
+  if (q.best > within) return {};
   return impl.answer(q);
 }
 

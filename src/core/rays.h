@@ -63,7 +63,9 @@ class RayScene {
 class NearestInTurn {
  public:
   explicit NearestInTurn(const RayScene& scene) : scene_(scene) {}
-  NearestPoint operator()(const Vec3& query);
+  /// None (triangle −1) where nothing lies at most `within` away.
+  NearestPoint operator()(const Vec3& query,
+                          double within = std::numeric_limits<double>::infinity());
 
  private:
   const RayScene& scene_;

@@ -86,8 +86,8 @@ RuleInfo melted_rule() {
       .sees =
           "Meshes of which no more than the relief is known: those whose walls lean outward, as "
           "heights and pictures from above give them, and those so coarse or bulging that windows "
-          "cannot be told, if roofs and walls explain them; and all that are heights on a square "
-          "grid, as an airborne cloud's surface is.",
+          "cannot be told, if roofs and walls explain them; and those that are heights on a square "
+          "grid, as an airborne cloud's surface is, if roofs and walls are what they show.",
       .does =
           "Draws the mesh as heights along most of its border, parts the ground around, joins "
           "neighbouring pieces of roof while a plane explains less than it costs, raises blocks "

@@ -1,21 +1,14 @@
 #include "bake/bake.h"
 
 #include <catch2/catch.hpp>
-#include <fstream>
 
 #include "core/parallel.h"
-#include "image/cache.h"
-#include "meshes.h"
-#include "temporary_folder.h"
+#include "walls.h"
 
 using namespace colod;
 using namespace colod::test;
 
 namespace {
-
-constexpr int kSide = 256;   // pixels of a source image
-constexpr double kEdge = 4;  // metres that it covers
-const double kTexel = kEdge / kSide;
 
 template <typename Color>
 Raster painted(int side, const Color& color) {
@@ -34,63 +27,6 @@ Raster ramps() {
     return Rgb{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
                static_cast<std::uint8_t>((x / 16 + y / 16) % 2 ? 230 : 20)};
   });
-}
-
-/// A square of kEdge in the plane y = 0, seen from −y, with an image on it: x is u, z is −v.
-struct Wall {
-  TemporaryFolder folder;
-  Mesh mesh;
-  Appearance look;
-  ImageCache cache{std::size_t{64} << 20};
-
-  explicit Wall(const Raster& raster) {
-    const std::string path = (folder / "wall.png").string();
-    std::ofstream(path, std::ios::binary) << encode_image(raster, ImageFormat::kPng, 0);
-    look.images = {{.path = path}};
-    look.materials.resize(1);
-    look.materials[0].image = 0;
-    mesh.vertices = {{0, 0, 0}, {kEdge, 0, 0}, {kEdge, 0, kEdge}, {0, 0, kEdge}};
-    mesh.faces = {{0, 1, 2}, {0, 2, 3}};
-    look.face_material = {0, 0};
-    look.uvs = {{Vec2f(0, 1), Vec2f(1, 1), Vec2f(1, 0)}, {Vec2f(0, 1), Vec2f(1, 0), Vec2f(0, 0)}};
-  }
-};
-
-/// Facets that are rectangles, each with vertices of its own, seen from −y.
-PolygonMesh rectangles(const std::vector<std::array<double, 4>>& x_z_width_height, double y) {
-  PolygonMesh mesh;
-  for (const auto& [x, z, w, h] : x_z_width_height) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    const int facet = static_cast<int>(mesh.facets.size());
-    for (const Vec3& p :
-         {Vec3(x, y, z), Vec3(x + w, y, z), Vec3(x + w, y, z + h), Vec3(x, y, z + h)})
-      mesh.vertices.push_back(p);
-    mesh.facets.push_back({-Vec3::UnitY(), facet, {{first, first + 1, first + 2, first + 3}}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-    mesh.triangles.push_back({first, first + 2, first + 3});
-    mesh.facet_of_triangle.insert(mesh.facet_of_triangle.end(), 2, facet);
-  }
-  return mesh;
-}
-
-/// What a client sees at a place of a triangle: bilinear, clamped.
-Eigen::Vector3d seen_at(const BakedTexture& t, const PolygonMesh& mesh, std::size_t triangle,
-                        const Vec3& p, const Raster& image) {
-  const Vec3 w = barycentric(mesh.mesh(), mesh.triangles[triangle], p);
-  Eigen::Vector2d uv = Eigen::Vector2d::Zero();
-  for (int c = 0; c < 3; ++c)
-    uv += w[c] * t.uvs[triangle][static_cast<std::size_t>(c)].cast<double>();
-  const double x = uv.x() * image.width - 0.5, y = uv.y() * image.height - 0.5;
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      const std::uint8_t* q =
-          image.at(std::clamp(x0 + i, 0, image.width - 1), std::clamp(y0 + j, 0, image.height - 1));
-      sum +=
-          (i ? x - x0 : 1 - x + x0) * (j ? y - y0 : 1 - y + y0) * Eigen::Vector3d(q[0], q[1], q[2]);
-    }
-  return sum;
 }
 
 /// A mip level as a client makes it: means of 2 × 2 pixels.
@@ -388,6 +324,33 @@ TEST_CASE("what nobody saw of a wall has the wall's mean beyond half a metre, an
   }
 }
 
+TEST_CASE("beside what is seen a wall goes on as its rim is, each place as the nearest to it") {
+  // 16 of 255 from pixel to pixel, up and down, so that a shift by half a texel shows.
+  const auto wave = [](double pixel) { return 16 * std::abs(std::remainder(pixel, 32.0)); };
+  const Wall wall(painted(kSide, [&](int x, int y) {
+    return Rgb{static_cast<std::uint8_t>(std::min(255.0, wave(x + 0.5))),
+               static_cast<std::uint8_t>(std::min(255.0, wave(y + 0.5))), 90};
+  }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const double rim = 0.2;
+  const PolygonMesh layer = rectangles({{-rim, -rim, kEdge + 2 * rim, kEdge + 2 * rim}}, 0);
+  const BakedTexture t = baker.bake(layer, {});
+  CHECK(t.facts.nearest > 0.1);
+  const auto at = [&](double x, double z) {
+    const Vec3 p(x, 0, z);
+    return seen_at(t, layer, x + rim > z + rim ? 0 : 1, p, t.image);
+  };
+  for (double along = 0.4; along < 3.6; along += 0.037)
+    for (const double out : {0.03, 0.1, 0.17}) {
+      INFO(along << " m along, " << out << " m out");
+      const double red = wave(along / kTexel), green = wave((kEdge - along) / kTexel);
+      CHECK(std::abs(at(along, kEdge + out)[0] - red) < 9);
+      CHECK(std::abs(at(along, -out)[0] - red) < 9);
+      CHECK(std::abs(at(kEdge + out, along)[1] - green) < 9);
+      CHECK(std::abs(at(-out, along)[1] - green) < 9);
+    }
+}
+
 TEST_CASE("an atlas keeps to its largest side, with larger texels") {
   const Wall wall(ramps());
   const Baker baker(wall.mesh, wall.look, wall.cache);
@@ -409,80 +372,4 @@ TEST_CASE("any number of threads bakes the same texels") {
     return t.image.rgb;
   };
   CHECK(baked(1) == baked(3));
-}
-
-namespace {
-
-/// Where u rises on a triangle, by its coordinates, as clients find a tangent without being given
-/// one.
-Vec3 tangent_of(const BakedTexture& t, const PolygonMesh& mesh, std::size_t triangle) {
-  const Face& f = mesh.triangles[triangle];
-  const Vec3 a = mesh.vertices[f[1]] - mesh.vertices[f[0]];
-  const Vec3 b = mesh.vertices[f[2]] - mesh.vertices[f[0]];
-  const auto& uv = t.uvs[triangle];
-  const Vec2 d = (uv[1] - uv[0]).cast<double>(), e = (uv[2] - uv[0]).cast<double>();
-  return ((e.y() * a - d.y() * b) / (d.x() * e.y() - e.x() * d.y())).normalized();
-}
-
-}  // namespace
-
-TEST_CASE("a normal map gives back, in the frame that clients make, how the source is turned") {
-  const double wave = GENERATE(1.0, 0.4), high = 0.03 * wave;
-  const bool is_wide = GENERATE(true, false);
-  INFO(wave << (is_wide ? " wide" : " high"));
-  const Vec2 size = is_wide ? Vec2(kEdge, 1) : Vec2(1, kEdge);
-  const double k = 2 * M_PI / wave, step = wave / 40;
-  Mesh relief;  // y = high · (sin kx + sin kz), seen from −y
-  const int nx = static_cast<int>(std::lround(size.x() / step)) + 1;
-  const int nz = static_cast<int>(std::lround(size.y() / step)) + 1;
-  for (int j = 0; j < nz; ++j)
-    for (int i = 0; i < nx; ++i)
-      relief.vertices.emplace_back(
-          i * step, high * (std::sin(k * i * step) + std::sin(k * j * step)), j * step);
-  for (int j = 0; j + 1 < nz; ++j)
-    for (int i = 0; i + 1 < nx; ++i) {
-      const int v = j * nx + i;
-      relief.faces.push_back({v, v + 1, v + nx + 1}),
-          relief.faces.push_back({v, v + nx + 1, v + nx});
-    }
-  Appearance look;
-  look.colors.assign(relief.faces.size(), {Rgb{9, 9, 9}, Rgb{99, 9, 9}, Rgb{9, 99, 9}});
-  const ImageCache none(0);
-  const Baker baker(relief, look, none);
-  const PolygonMesh layer = rectangles({{0, 0, size.x(), size.y()}}, 0);
-  const BakeOptions options{.texel = wave / 50, .reach = 0.5, .has_normals = true};
-  const BakedTexture t = baker.bake(layer, options);
-  REQUIRE(t.normals.width == t.image.width);
-  REQUIRE(t.normals.height == t.image.height);
-  double farthest = 0;
-  for (double x = 0.1; x < size.x() - 0.1; x += 0.07)
-    for (double z = 0.1; z < size.y() - 0.1; z += 0.07) {
-      const Vec3 p(x, 0, z);
-      const std::size_t own = barycentric(layer.mesh(), layer.triangles[0], p).minCoeff() < 0;
-      const Eigen::Vector3d seen = seen_at(t, layer, own, p, t.normals) / 127.5;
-      const Vec3 right = tangent_of(t, layer, own), out = -Vec3::UnitY();
-      const Vec3 n =
-          (seen.x() - 1) * right + (seen.y() - 1) * out.cross(right) + (seen.z() - 1) * out;
-      const Vec3 real =
-          Vec3(high * k * std::cos(k * x), -1, high * k * std::cos(k * z)).normalized();
-      CHECK(std::abs(n.norm() - 1) < 0.05);
-      farthest = std::max(farthest, std::acos(std::min(1.0, n.normalized().dot(real))));
-    }
-  CHECK(farthest * 180 / M_PI < 2);  // of 15 degrees
-  CHECK(baker.bake(layer, {.texel = wave / 50}).normals.rgb.empty());
-}
-
-TEST_CASE("a normal map of a plain box is flat up to its edges, and beyond them") {
-  const Mesh box = box_mesh({0, 0, 0}, {4, 0.5, 2});
-  Appearance look;
-  look.colors.assign(box.faces.size(), {Rgb{9, 9, 9}, Rgb{99, 9, 9}, Rgb{9, 99, 9}});
-  const ImageCache none(0);
-  const PolygonMesh layer = rectangles({{0, 0, 9, 2}}, 0);  // twice as wide as the box
-  const BakedTexture t =
-      Baker(box, look, none).bake(layer, {.texel = 0.05, .reach = 0.5, .has_normals = true});
-  int turned = 0;
-  for (std::size_t i = 0; i < t.normals.rgb.size(); i += 3)
-    turned += std::abs(t.normals.rgb[i] - 128) > 1 || std::abs(t.normals.rgb[i + 1] - 128) > 1 ||
-              t.normals.rgb[i + 2] != 255;
-  CHECK(turned == 0);
 }

@@ -148,7 +148,7 @@ TEST_CASE("a finest layer with little of the source behind it counts as lost, a 
   finest.ragged = 1.1 * kMostRagged * finest.wall_area;
   CHECK(b.has_lost());
   REQUIRE(loss_warnings(b).size() == 1);
-  CHECK_THAT(loss_warnings(b)[0], Catch::Contains("28 % as much as it has walls"));
+  CHECK_THAT(loss_warnings(b)[0], Catch::Contains("22 % as much as it has walls"));
   b.layers.back().failure = "none";  // which is told of by itself
   CHECK(loss_warnings(b).empty());
 }
