@@ -104,11 +104,11 @@ TEST_CASE("where nothing that agrees is near no nearest place is asked for, and 
   const Chart own = chart(side);
   const Sight sight(mesh, probe, own, 0.5);
   bool is_ever_far = false;
-  NearestPoint last;
+  NearestInTurn last = probe.in_turn();
   for (double y = 0; y <= side; y += side / 50)
     for (double x = 0; x <= side; x += side / 50) {
-      NearestPoint none;
-      const Found found = probe.beside(own.lift({x, y}), own.normal, 0.5, {}, none);
+      NearestInTurn fresh = probe.in_turn();
+      const Found found = probe.beside(own.lift({x, y}), own.normal, 0.5, {}, fresh);
       const Found again = probe.beside(own.lift({x, y}), own.normal, 0.5, {}, last);
       CHECK(again.how == found.how);
       CHECK((again.point - found.point).norm() < 1e-6);

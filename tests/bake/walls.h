@@ -35,7 +35,8 @@ struct Wall {
 };
 
 /// Facets that are rectangles, each with vertices of its own, seen from −y.
-inline PolygonMesh rectangles(const std::vector<std::array<double, 4>>& x_z_width_height, double y) {
+inline PolygonMesh rectangles(const std::vector<std::array<double, 4>>& x_z_width_height,
+                              double y) {
   PolygonMesh mesh;
   for (const auto& [x, z, w, h] : x_z_width_height) {
     const int first = static_cast<int>(mesh.vertices.size());
@@ -53,7 +54,7 @@ inline PolygonMesh rectangles(const std::vector<std::array<double, 4>>& x_z_widt
 
 /// What a client sees at a place of a triangle: bilinear, clamped.
 inline Eigen::Vector3d seen_at(const BakedTexture& t, const PolygonMesh& mesh, std::size_t triangle,
-                        const Vec3& p, const Raster& image) {
+                               const Vec3& p, const Raster& image) {
   const Vec3 w = barycentric(mesh.mesh(), mesh.triangles[triangle], p);
   Eigen::Vector2d uv = Eigen::Vector2d::Zero();
   for (int c = 0; c < 3; ++c)

@@ -177,6 +177,9 @@ TEST_CASE("nearest in turn answers as nearest, whatever was asked before") {
     REQUIRE(near.triangle == alone.triangle);
     REQUIRE(near.distance == alone.distance);
     REQUIRE(near.point == alone.point);
+    CHECK(in_turn(p, 1.001 * alone.distance).point == alone.point);
+    CHECK(in_turn(p, 0.999 * alone.distance).triangle ==
+          (alone.distance > 0 ? -1 : alone.triangle));
   }
   const RayScene empty{Mesh()};
   CHECK(NearestInTurn(empty)({0, 0, 0}).triangle == -1);
