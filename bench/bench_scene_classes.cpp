@@ -1,11 +1,12 @@
 // What a scene's cells are taken for: ground, buildings, plants and the rest, for
 // bench/scene_truth.
 //
-//   bench_scene_classes SCENE OUT [--threads N]
+//   bench_scene_classes SCENE OUT [--footprints FILE] [--threads N]
 //
 // OUT is a line of JSON (corner, cell, width, height; metres in the scene's frame) and then a byte
 // a cell, row by row from the least y: 0 nothing, 1 ground, 2 building, 3 plant, 4 rest; and as
-// many four-byte floats, the height of the ground below each.
+// many four-byte floats, the height of the ground below each. FILE: the plans that were found, for
+// bench/footprints.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -18,10 +19,12 @@ using namespace colod;
 
 int main(int argc, char** argv) {
   CLI::App app{"What a scene's cells are taken for"};
-  std::string path, out;
+  std::string path, out, footprints;
   int threads = 0;
   app.add_option("scene", path, "what colod build takes for a scene")->required();
   app.add_option("out", out, "the file that is written")->required();
+  app.add_option("--footprints", footprints,
+                 "where the plans that were found are written, as GeoJSON");
   app.add_option("--threads", threads, "default: all");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -43,6 +46,7 @@ int main(int argc, char** argv) {
     for (const SceneClass c : classes.of_cell) file.put(static_cast<char>(c));
     file.write(reinterpret_cast<const char*>(classes.ground.data()),
                static_cast<std::streamsize>(classes.ground.size() * sizeof(float)));
+    if (!footprints.empty()) std::ofstream(footprints) << inputs.found_footprints;
     if (!file.flush()) throw std::runtime_error(out + ": cannot be written");
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

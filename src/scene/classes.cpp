@@ -12,6 +12,7 @@
 #include "core/union_find.h"
 #include "flatness.h"
 #include "parameters.h"
+#include "patches.h"
 #include "terrain.h"
 
 namespace colod {
@@ -200,6 +201,18 @@ Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, IsOne i
   return out;
 }
 
+/// Of cells that are numbered from 0 on.
+Regions counted(std::vector<int> of_cell) {
+  Regions out{std::move(of_cell), {}};
+  for (const int r : out.of_cell) {
+    if (r < 0) continue;
+    if (static_cast<std::size_t>(r) >= out.cells.size())
+      out.cells.resize(static_cast<std::size_t>(r) + 1);
+    ++out.cells[static_cast<std::size_t>(r)];
+  }
+  return out;
+}
+
 /// Cells beside a region at its height join it, a ring: those at the foot of a higher roof.
 void take_rim(const HeightMap& map, const std::vector<char>& is_open, Regions& regions) {
   const std::vector<int> before = regions.of_cell;
@@ -370,6 +383,56 @@ void take_clutter(const HeightMap& map, const std::vector<char>& stands,
     if (regions.of_cell[i] >= 0) building[i] = joined[static_cast<std::size_t>(regions.of_cell[i])];
 }
 
+/// Per block the share of what is around it, kAround metres off, that is leaves.
+std::vector<double> leafy_rims(const HeightMap& map, const std::vector<char>& stands,
+                               const Regions& blocks) {
+  std::vector<double> rim(blocks.cells.size(), 0), leafy = rim;
+  const int off = std::max(1, static_cast<int>(std::lround(kAround / map.cell)));
+  for (int y = off; y + off < map.height; ++y)
+    for (int x = off; x + off < map.width; ++x) {
+      const int block = blocks.of_cell[map.at(x, y)];
+      if (block < 0) continue;
+      for (const auto& [u, v] : {std::pair{x - off, y}, {x + off, y}, {x, y - off}, {x, y + off}}) {
+        const std::size_t j = map.at(u, v);
+        if (blocks.of_cell[j] >= 0) continue;
+        ++rim[static_cast<std::size_t>(block)];
+        leafy[static_cast<std::size_t>(block)] += stands[j] && greenness(map.color[j]) > kGrey;
+      }
+    }
+  for (std::size_t b = 0; b < rim.size(); ++b) leafy[b] /= std::max(1.0, rim[b]);
+  return leafy;
+}
+
+/// Trees are smooth where they were seen badly: what stands alone, is no larger than a crown, has
+/// no roof's colour and leaves around it is one. For maps with colours.
+void drop_crowns(const HeightMap& map, const std::vector<char>& stands, std::vector<float>& plant,
+                 std::vector<int>& building) {
+  std::vector<char> is_in(map.size());
+  for (std::size_t i = 0; i < map.size(); ++i) is_in[i] = building[i] >= 0;
+  const Regions blocks = regions_of(map, is_in, [](std::size_t, std::size_t) { return true; });
+  const std::vector<double> leafy = leafy_rims(map, stands, blocks);
+  std::vector<double> green(leafy.size(), 0);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (const int b = blocks.of_cell[i]; b >= 0)
+      green[static_cast<std::size_t>(b)] +=
+          greenness(map.color[i]) / blocks.cells[static_cast<std::size_t>(b)];
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!is_in[i]) continue;
+    const auto b = static_cast<std::size_t>(blocks.of_cell[i]);
+    if (blocks.cells[b] * map.cell * map.cell < kLargestCrown && green[b] > kGreenish &&
+        leafy[b] > kLeafy)
+      building[i] = -1, plant[i] = 1;
+  }
+}
+
+/// Numbers from 0 on, in the order of their first cells; how many there are.
+int renumber(std::vector<int>& building) {
+  std::map<int, int> number;
+  for (int& b : building)
+    if (b >= 0) b = number.try_emplace(b, static_cast<int>(number.size())).first->second;
+  return static_cast<int>(number.size());
+}
+
 }  // namespace
 
 SceneClasses classify(const HeightMap& map) {
@@ -388,9 +451,10 @@ SceneClasses classify(const HeightMap& map) {
   is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
   for (std::size_t i = 0; i < map.told.size(); ++i)
     if (map.told[i] == SceneClass::kBuilding) is_roof[i] = is_open[i];
-  Regions regions = regions_of(map, is_roof, [&](std::size_t i, std::size_t j) {
+  const Regions level = regions_of(map, is_roof, [&](std::size_t i, std::size_t j) {
     return std::abs(steps.rise(i, j)) < kStep;
   });
+  Regions regions = counted(part_at_necks(map, level.of_cell));
   for (int round = 0; round < kRimRounds; ++round) take_rim(map, is_open, regions);
   join_small(map, regions);
   const std::vector<int> number = number_buildings(map, out.ground, regions, out.buildings);
@@ -400,7 +464,11 @@ SceneClasses classify(const HeightMap& map) {
     if (const int r = regions.of_cell[i]; r >= 0)
       out.building[i] = number[static_cast<std::size_t>(r)];
   take_walls(map, out.ground, is_open, out.building);
-  if (map.told.empty()) take_clutter(map, stands, out.building);
+  if (map.told.empty()) {
+    take_clutter(map, stands, out.building);
+    if (!map.color.empty()) drop_crowns(map, stands, plant, out.building);
+    out.buildings = renumber(out.building);
+  }
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (std::isnan(map.top[i])) continue;
     out.of_cell[i] = out.building[i] >= 0 ? SceneClass::kBuilding

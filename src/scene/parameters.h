@@ -112,19 +112,23 @@ constexpr double kLeastWindow = 1.0, kLeastTimes = 6;
 constexpr double kEven = 0.08, kUneven = 0.4;  // metres off a plane: of roofs, of crowns
 constexpr double kGrey = 0.04, kGreen = 0.16;  // of roofs, of leaves
 constexpr double kRoughWeight = 0.7, kGreenWeight = 0.7;
-constexpr double kRoof = 0.4;         // of these weights: what is less is a roof
-constexpr double kCalm = 2;           // metres that a cell's neighbours decide with it
-constexpr double kNarrow = 1.0;       // metres: fences are narrower than roofs of sheds
-constexpr double kWallStep = 0.6;     // metres between neighbours, over the roof's own slope …
-constexpr double kSteepestRoof = 2;   // … of at most so many metres a metre, 63°, …
-constexpr double kSmooth = 0.15;      // … where the surface is off its plane by less
-constexpr double kStep = 0.6;         // metres between roofs of different buildings
-constexpr double kLeastRoof = 10;     // m²: smaller ones join a neighbour …
-constexpr double kTouching = 0.25;    // … that holds this share of their rim
-constexpr double kSurrounded = 0.55;  // of a rim: a level on a roof
-constexpr int kRimRounds = 5;         // cells at its height that a roof takes in
-constexpr int kWallRounds = 2;        // cells that melted walls are wide, and halves of parapets
-constexpr double kAmid = 0.6;         // of what is rough that buildings are around
+constexpr double kRoof = 0.4;          // of these weights: what is less is a roof
+constexpr double kCalm = 2;            // metres that a cell's neighbours decide with it
+constexpr double kNarrow = 1.0;        // metres: fences are narrower than roofs of sheds
+constexpr double kWallStep = 0.6;      // metres between neighbours, over the roof's own slope …
+constexpr double kSteepestRoof = 2;    // … of at most so many metres a metre, 63°, …
+constexpr double kSmooth = 0.15;       // … where the surface is off its plane by less
+constexpr double kStep = 0.6;          // metres between roofs of different buildings
+constexpr double kLeastRoof = 10;      // m²: smaller ones join a neighbour …
+constexpr double kTouching = 0.25;     // … that holds this share of their rim
+constexpr double kSurrounded = 0.55;   // of a rim: a level on a roof
+constexpr int kRimRounds = 5;          // cells at its height that a roof takes in
+constexpr int kWallRounds = 2;         // cells that melted walls are wide, and halves of parapets
+constexpr double kAmid = 0.6;          // of what is rough that buildings are around
+constexpr double kAround = 1.6;        // metres off: beyond melted rims
+constexpr double kLeafy = 0.55;        // of what is around a smooth crown: leaves …
+constexpr double kLargestCrown = 100;  // m²: … it is no larger …
+constexpr double kGreenish = 0;        // … and neither red nor blue
 constexpr int kRounds = 10;
 constexpr double kLeastBuilding = 8;  // m²: sheds
 // Metres; squares have an odd number of cells, so that at 0.4 m these are 2.8 and 2.0 wide.
@@ -135,24 +139,41 @@ constexpr double kLeastHeight = 2.2;                   // … at least so high
 
 }  // namespace colod::parameters::classes
 
+// Chosen on made-up places (seeds 1, 3 and 5) and on the drawn footprints of two real scenes; all
+// of them are development. docs/log/quality.md has the figures.
+namespace colod::parameters::patches {
+
+constexpr double kNeck = 2.8;         // metres: buildings that touch are joined by less
+constexpr double kLeastCore = 30;     // m²: a building that is joined to another one has more
+constexpr double kTintStep = 0.8;     // metres to either side of a change of colour
+constexpr double kLight = 50;         // of 255: brightness
+constexpr double kHue = 0.25;         // of the brightness: a channel over the mean of the three …
+constexpr double kDark = 20;          // … and this, of 255, so that dark places have no hue
+constexpr double kBend = 0.3;         // metres a metre: by so much slopes change at a ridge
+constexpr double kLeastTinted = 100;  // m²: what is smaller is one house, whatever its colours
+constexpr double kLeastPatch = 4;     // m² without its rim: chimneys and skylights are smaller
+
+}  // namespace colod::parameters::patches
+
 // Chosen on made-up rows (seeds 1 and 3) and on the drawn footprints of two real scenes; all of
 // them are development. docs/log/quality.md has the figures.
 namespace colod::parameters::party_walls {
 
-constexpr double kBlurred = 0.6;       // metres beside a line in which heights are of both sides
-constexpr double kStripEnd = 1.6;      // metres beside a line that are compared
-constexpr double kPiece = 3.5;         // metres of a line: roofs slope alike along it
-constexpr double kLeastStep = 0.15;    // metres of height across a line
-constexpr double kLeastTint = 25;      // of 255: how one channel of the colour changes across it
-constexpr double kAlike = 0.6;         // of a line's pieces that step the same way
-constexpr double kShortest = 4.5;      // metres of a line
-constexpr double kLongest = 25;        // metres of a line: halls are deeper than houses
-constexpr double kHouseWidth = 3.5;    // metres beside a line …
-constexpr double kWhole = 0.7;         // … that are the building's along this share of it
-constexpr double kNarrowest = 4;       // metres between two walls
-constexpr double kBeyond = 1.5;        // cells that a wall goes on at both ends
-constexpr double kLeastRowHouse = 30;  // m²
-constexpr double kLeastBlock = 150;    // m²: what is smaller is one house more often than two
+constexpr double kBlurred = 0.6;        // metres beside a line in which heights are of both sides
+constexpr double kStripEnd = 1.6;       // metres beside a line that are compared
+constexpr double kPiece = 3.5;          // metres of a line: roofs slope alike along it
+constexpr double kLeastStep = 0.15;     // metres of height across a line
+constexpr double kLeastTint = 25;       // of 255: how one channel of the colour changes across it
+constexpr double kAlike = 0.6;          // of a line's pieces that step the same way
+constexpr double kShortest = 4.5;       // metres of a line
+constexpr double kLongest = 25;         // metres of a line: halls are deeper than houses
+constexpr double kHouseWidth = 3.5;     // metres beside a line …
+constexpr double kWhole = 0.7;          // … that are the building's along this share of it
+constexpr double kNarrowest = 4;        // metres between two walls
+constexpr double kBeyond = 1.5;         // cells that a wall goes on at both ends
+constexpr double kLeastRowHouse = 25;   // m² …
+constexpr double kLeastOfBlock = 0.02;  // … and of its block: halls have skylights and signs
+constexpr double kLeastBlock = 150;     // m²: what is smaller is one house more often than two
 constexpr int kJoinRounds = 10;
 
 }  // namespace colod::parameters::party_walls

@@ -8,6 +8,7 @@
 #include "classes.h"
 #include "parameters.h"
 #include "party_walls.h"
+#include "patches.h"
 
 namespace colod {
 
@@ -42,18 +43,18 @@ void shut(const HeightMap& map, const PartyWall& wall, ClosedSides& closed) {
     }
 }
 
-/// Parts of buildings between closed sides, numbered from 0 on; −1: none.
-std::vector<int> parts_of(const HeightMap& map, const std::vector<int>& building,
+/// Parts of patches between closed sides, numbered from 0 on; −1: none.
+std::vector<int> parts_of(const HeightMap& map, const std::vector<int>& patch,
                           const ClosedSides& closed, std::vector<int>& cells) {
   std::vector<int> part(map.size(), -1);
   const auto w = static_cast<std::size_t>(map.width);
   for (std::size_t start = 0; start < map.size(); ++start) {
-    if (building[start] < 0 || part[start] >= 0) continue;
+    if (patch[start] < 0 || part[start] >= 0) continue;
     const int number = static_cast<int>(cells.size());
     std::vector<std::size_t> open = {start};
     part[start] = number;
     const auto reach = [&](std::size_t j, bool is_closed) {
-      if (is_closed || part[j] >= 0 || building[j] != building[start]) return;
+      if (is_closed || part[j] >= 0 || patch[j] != patch[start]) return;
       part[j] = number, open.push_back(j);
     };
     for (std::size_t n = 0; n < open.size(); ++n) {
@@ -87,10 +88,25 @@ PartRims part_rims(const HeightMap& map, const std::vector<int>& building,
   return rims;
 }
 
+/// Per part the cells that a house has at least.
+std::vector<double> least_houses(const HeightMap& map, const std::vector<int>& building,
+                                 const std::vector<int>& part, std::size_t parts) {
+  std::map<int, double> block;
+  for (const int b : building)
+    if (b >= 0) ++block[b];
+  std::vector<double> least(parts, kLeastRowHouse / map.cell / map.cell);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (part[i] >= 0) {
+      double& own = least[static_cast<std::size_t>(part[i])];
+      own = std::max(own, kLeastOfBlock * block.at(building[i]));
+    }
+  return least;
+}
+
 /// Parts that are no house join the one that they touch most, the smallest first, each once a
 /// round.
-bool join_least(const HeightMap& map, const std::vector<int>& building, std::vector<int>& part,
-                std::vector<int>& cells) {
+bool join_least(const HeightMap& map, const std::vector<int>& building,
+                const std::vector<double>& least, std::vector<int>& part, std::vector<int>& cells) {
   const PartRims rims = part_rims(map, building, part, cells.size());
   std::vector<std::size_t> order(cells.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -101,7 +117,7 @@ bool join_least(const HeightMap& map, const std::vector<int>& building, std::vec
   std::vector<char> is_busy(cells.size(), 0);
   bool has_joined = false;
   for (const std::size_t p : order) {
-    if (cells[p] == 0 || cells[p] * map.cell * map.cell >= kLeastRowHouse || is_busy[p]) continue;
+    if (cells[p] == 0 || cells[p] >= least[p] || is_busy[p]) continue;
     const auto most = std::max_element(rims[p].begin(), rims[p].end(),
                                        [](auto& a, auto& b) { return a.second < b.second; });
     if (most == rims[p].end()) continue;
@@ -139,9 +155,11 @@ ClosedSides party_walls_of(const HeightMap& map, const SceneClasses& classes) {
 
 void part_rows(const HeightMap& map, SceneClasses& classes) {
   std::vector<int> cells;
-  std::vector<int> part = parts_of(map, classes.building, party_walls_of(map, classes), cells);
+  std::vector<int> part =
+      parts_of(map, part_at_tints(map, classes.building), party_walls_of(map, classes), cells);
+  const std::vector<double> least = least_houses(map, classes.building, part, cells.size());
   for (int round = 0; round < kJoinRounds; ++round)
-    if (!join_least(map, classes.building, part, cells)) break;
+    if (!join_least(map, classes.building, least, part, cells)) break;
   std::vector<int> number(cells.size(), -1);
   classes.buildings = 0;
   for (std::size_t i = 0; i < map.size(); ++i) {

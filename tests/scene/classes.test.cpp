@@ -28,10 +28,11 @@ class Place {
   }
 
   /// Level, at this height over the ground at its corner.
-  Place& house(double x, double y, double w, double h, double height) {
+  Place& house(double x, double y, double w, double h, double height,
+               const Rgb& color = {170, 90, 80}) {
     const float z = at(x, y) + static_cast<float>(height);
     cover(x, y, w, h, [&](std::size_t i, double, double) {
-      map_.top[i] = z, inside_[i] = 1, map_.color[i] = {170, 90, 80};
+      map_.top[i] = z, inside_[i] = 1, map_.color[i] = color;
     });
     return *this;
   }
@@ -56,6 +57,17 @@ class Place {
       if (far > 1) return;
       const double bump = 0.8 * (static_cast<double>(random() % 1000) / 1000 - 0.5);
       map_.top[i] = ground_[i] + static_cast<float>(height * std::sqrt(1 - far * far) + bump + 1);
+      map_.color[i] = {70, 120, 50};
+    });
+    return *this;
+  }
+
+  /// Green and rough, at this height.
+  Place& wood(double x, double y, double w, double h, double height) {
+    std::mt19937 random(9);
+    cover(x, y, w, h, [&](std::size_t i, double, double) {
+      const double bump = 2 * (static_cast<double>(random() % 1000) / 1000 - 0.5);
+      map_.top[i] = ground_[i] + static_cast<float>(height + bump);
       map_.color[i] = {70, 120, 50};
     });
     return *this;
@@ -222,6 +234,33 @@ TEST_CASE("what stands about on a roof is the roof's, a tree beside it is not") 
   const SceneClasses found = classify(place.map());
   CHECK(found.buildings == 1);
   CHECK(place.overlap(found) > 0.95);
+}
+
+TEST_CASE("a smooth crown amid leaves is a plant, houses beside and amid trees are none") {
+  const double size = GENERATE(6.0, 7.5, 9.0);
+  CAPTURE(size);
+  constexpr Rgb kDull = {118, 120, 116}, kTiles = {170, 90, 80};
+  const auto found = [](double side, const Rgb& color, bool is_wood) {
+    Place place(80, kLevel);
+    if (is_wood)
+      place.wood(40 - side, 40 - side, 2 * side, 2 * side, 5);
+    else
+      place.wood(40 - 2 * side, 40 - side, 1.5 * side, 2 * side, 5);
+    place.house(40 - side / 2, 40 - side / 2, side, side, 6, color);
+    return classify(place.map()).buildings;
+  };
+  CHECK(found(size, kDull, true) == 0);
+  CHECK(found(size, kTiles, true) == 1);
+  CHECK(found(size, kDull, false) == 1);
+  CHECK(found(14, kDull, true) == 1);
+}
+
+TEST_CASE("two houses of one height that touch at a corner are two") {
+  for (const double size : {8.0, 20.0, 40.0}) {
+    Place place(2 * size + 40, kLevel);
+    place.house(10, 10, size, size, 6).house(10 + size, 10 + size - 1.6, size, size, 6);
+    CHECK(classify(place.map()).buildings == 2);
+  }
 }
 
 TEST_CASE("a block is parted where its roofs lie at different heights") {

@@ -92,6 +92,31 @@ TEST_CASE("what is alike, too small or too deep is not parted") {
   }
 }
 
+TEST_CASE("an area of another colour is a house in a block of houses, and a sign on a hall") {
+  const auto parted = [](double length, double depth) {
+    HeightMap map;
+    map.cell = 0.4, map.width = map.height = static_cast<int>((length + 4) / map.cell);
+    SceneClasses classes;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        const Vec2 p = map.middle(x, y) - Vec2(2, 2);
+        const bool is_roof = p.x() > 0 && p.y() > 0 && p.x() < length && p.y() < depth;
+        const bool is_white = p.x() > 5 && p.y() > 6 && p.x() < 13 && p.y() < 12;
+        map.top.push_back(is_roof ? 8 : 0);
+        map.color.push_back(is_roof && is_white ? Rgb{230, 230, 230} : Rgb{120, 120, 120});
+        classes.building.push_back(is_roof ? 0 : -1);
+      }
+    classes.buildings = 1;
+    classes.ground.assign(map.size(), 0);
+    part_rows(map, classes);
+    return classes.buildings;
+  };
+  CHECK(parted(20, 16) >= 2);
+  CHECK(parted(30, 20) >= 2);
+  CHECK(parted(80, 40) == 1);
+  CHECK(parted(150, 60) == 1);
+}
+
 TEST_CASE("a place without buildings stays as it is") {
   HeightMap map;
   map.width = map.height = 10, map.cell = 0.4;

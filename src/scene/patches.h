@@ -1,0 +1,21 @@
+// Inside room `scene` only: regions of a height map → patches, that hang together by more than a
+// narrow neck, or have one colour.
+#pragma once
+
+#include <vector>
+
+#include "survey.h"
+
+namespace colod {
+
+/// Per cell the number of its patch, from 0 on; −1 where it is of no region. Two patches of one
+/// region are parted where no square of kNeck metres passes from one to the other; each holds the
+/// middles of such squares over kLeastCore m². `region`: per cell its number; −1: none. O(cells).
+std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& region);
+
+/// Likewise, parted where the colour changes within kTintStep metres to either side and the surface
+/// does not bend, as it does at a ridge, whose sides have different light. Regions of less than
+/// kLeastTinted m² stay whole, and all do where there are no colours. O(cells).
+std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& region);
+
+}  // namespace colod
