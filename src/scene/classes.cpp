@@ -201,18 +201,6 @@ Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, IsOne i
   return out;
 }
 
-/// Of cells that are numbered from 0 on.
-Regions counted(std::vector<int> of_cell) {
-  Regions out{std::move(of_cell), {}};
-  for (const int r : out.of_cell) {
-    if (r < 0) continue;
-    if (static_cast<std::size_t>(r) >= out.cells.size())
-      out.cells.resize(static_cast<std::size_t>(r) + 1);
-    ++out.cells[static_cast<std::size_t>(r)];
-  }
-  return out;
-}
-
 /// Cells beside a region at its height join it, a ring: those at the foot of a higher roof.
 void take_rim(const HeightMap& map, const std::vector<char>& is_open, Regions& regions) {
   const std::vector<int> before = regions.of_cell;
@@ -425,14 +413,6 @@ void drop_crowns(const HeightMap& map, const std::vector<char>& stands, std::vec
   }
 }
 
-/// Numbers from 0 on, in the order of their first cells; how many there are.
-int renumber(std::vector<int>& building) {
-  std::map<int, int> number;
-  for (int& b : building)
-    if (b >= 0) b = number.try_emplace(b, static_cast<int>(number.size())).first->second;
-  return static_cast<int>(number.size());
-}
-
 }  // namespace
 
 SceneClasses classify(const HeightMap& map) {
@@ -454,7 +434,8 @@ SceneClasses classify(const HeightMap& map) {
   const Regions level = regions_of(map, is_roof, [&](std::size_t i, std::size_t j) {
     return std::abs(steps.rise(i, j)) < kStep;
   });
-  Regions regions = counted(part_at_necks(map, level.of_cell));
+  Regions regions{part_at_necks(map, level.of_cell), {}};
+  regions.cells = cells_of(regions.of_cell);
   for (int round = 0; round < kRimRounds; ++round) take_rim(map, is_open, regions);
   join_small(map, regions);
   const std::vector<int> number = number_buildings(map, out.ground, regions, out.buildings);

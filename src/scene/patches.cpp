@@ -95,15 +95,10 @@ std::vector<int> grown(const HeightMap& map, const std::vector<int>& region,
   return patch;
 }
 
-/// Colours, and what is the same region's, near a cell.
+/// Where colours change. Keeps references to both.
 class Tints {
  public:
-  Tints(const HeightMap& map, const std::vector<int>& region) : map_(map), region_(region) {
-    mean_.resize(map.size());
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x)
-        if (region[map.at(x, y)] >= 0) mean_[map.at(x, y)] = mean_about(x, y);
-  }
+  Tints(const HeightMap& map, const std::vector<int>& region) : map_(map), region_(region) {}
 
   /// Whether the colour changes across a cell, from `step` cells before it to as many behind, on a
   /// surface that goes straight on.
@@ -113,7 +108,8 @@ class Tints {
     const std::size_t a = map_.at(ax, ay), b = map_.at(bx, by);
     const int own = region_[map_.at(x, y)];
     if (region_[a] != own || region_[b] != own) return false;
-    return differ(mean_[a], mean_[b]) && !bends(x, y, 2 * dx * step, 2 * dy * step);
+    return differ(mean_about(ax, ay), mean_about(bx, by)) &&
+           !bends(x, y, 2 * dx * step, 2 * dy * step);
   }
 
  private:
@@ -152,18 +148,7 @@ class Tints {
 
   const HeightMap& map_;
   const std::vector<int>& region_;
-  std::vector<Tint> mean_;
 };
-
-std::vector<double> cells_of(const std::vector<int>& region) {
-  std::vector<double> cells;
-  for (const int r : region) {
-    if (r < 0) continue;
-    if (static_cast<std::size_t>(r) >= cells.size()) cells.resize(static_cast<std::size_t>(r) + 1);
-    ++cells[static_cast<std::size_t>(r)];
-  }
-  return cells;
-}
 
 }  // namespace
 
@@ -190,6 +175,23 @@ std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& reg
       is_core[i] = !tints.changes(x, y, 1, 0, step) && !tints.changes(x, y, 0, 1, step);
     }
   return grown(map, region, shrunk(map, region, is_core), kLeastPatch / area_of(map, 1));
+}
+
+std::vector<double> cells_of(const std::vector<int>& region) {
+  std::vector<double> cells;
+  for (const int r : region) {
+    if (r < 0) continue;
+    if (static_cast<std::size_t>(r) >= cells.size()) cells.resize(static_cast<std::size_t>(r) + 1);
+    ++cells[static_cast<std::size_t>(r)];
+  }
+  return cells;
+}
+
+int renumber(std::vector<int>& region) {
+  std::map<int, int> number;
+  for (int& r : region)
+    if (r >= 0) r = number.try_emplace(r, static_cast<int>(number.size())).first->second;
+  return static_cast<int>(number.size());
 }
 
 }  // namespace colod

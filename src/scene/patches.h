@@ -18,4 +18,10 @@ std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& reg
 /// kLeastTinted m² stay whole, and all do where there are no colours. O(cells).
 std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& region);
 
+/// Per region, numbered from 0 on, its cells.
+std::vector<double> cells_of(const std::vector<int>& region);
+
+/// Numbers regions from 0 on, in the order of their first cells; how many there are.
+int renumber(std::vector<int>& region);
+
 }  // namespace colod

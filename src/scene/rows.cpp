@@ -91,14 +91,12 @@ PartRims part_rims(const HeightMap& map, const std::vector<int>& building,
 /// Per part the cells that a house has at least.
 std::vector<double> least_houses(const HeightMap& map, const std::vector<int>& building,
                                  const std::vector<int>& part, std::size_t parts) {
-  std::map<int, double> block;
-  for (const int b : building)
-    if (b >= 0) ++block[b];
+  const std::vector<double> block = cells_of(building);
   std::vector<double> least(parts, kLeastRowHouse / map.cell / map.cell);
   for (std::size_t i = 0; i < map.size(); ++i)
     if (part[i] >= 0) {
       double& own = least[static_cast<std::size_t>(part[i])];
-      own = std::max(own, kLeastOfBlock * block.at(building[i]));
+      own = std::max(own, kLeastOfBlock * block[static_cast<std::size_t>(building[i])]);
     }
   return least;
 }
@@ -160,14 +158,8 @@ void part_rows(const HeightMap& map, SceneClasses& classes) {
   const std::vector<double> least = least_houses(map, classes.building, part, cells.size());
   for (int round = 0; round < kJoinRounds; ++round)
     if (!join_least(map, classes.building, least, part, cells)) break;
-  std::vector<int> number(cells.size(), -1);
-  classes.buildings = 0;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (part[i] < 0) continue;
-    int& own = number[static_cast<std::size_t>(part[i])];
-    if (own < 0) own = classes.buildings++;
-    classes.building[i] = own;
-  }
+  classes.building = std::move(part);
+  classes.buildings = renumber(classes.building);
 }
 
 }  // namespace colod
