@@ -12,6 +12,7 @@
 #include "input_options.h"
 #include "log.h"
 #include "measure/metrics.h"
+#include "place/place.h"
 
 namespace colod::cli {
 namespace {
@@ -45,6 +46,25 @@ Json mesh_json(const Source& s) {
           {"nonmanifold_edges", v.nonmanifold_edges},
           {"self_intersections", v.self_intersections},
           {"degenerate_faces", v.degenerate_faces}};
+}
+
+/// Where on Earth the file, or one beside it, says that it is; null: nothing does. What is wrong
+/// with it joins the warnings.
+Json place_json(const std::string& file, const Box& box, Json& warnings) {
+  try {
+    const std::optional<Georeference> place = georeference_beside(file);
+    if (!place) return nullptr;
+    const EarthMap earth = place_on_earth(*place, box.center());
+    for (const auto& list : {place->warnings, earth.warnings})
+      for (const std::string& warning : list) warnings.push_back(warning);
+    return {{"crs", place->crs},
+            {"name", earth.name},
+            {"offset", {place->offset.x(), place->offset.y(), place->offset.z()}},
+            {"said_by", place->source}};
+  } catch (const Error& e) {
+    warnings.push_back(e.what());
+    return nullptr;
+  }
 }
 
 /// Tiles below and with `root`; a tileset of any shape or depth.
@@ -105,6 +125,9 @@ int info(const InfoArguments& a) {
                                    {"normals", !source.cloud.normals.empty()},
                                    {"box", box_json(bounding_box(source.cloud.points))}};
     json["warnings"] = source.warnings;
+    json["place"] = place_json(
+        file, bounding_box(source.is_mesh() ? source.mesh.vertices : source.cloud.points),
+        json["warnings"]);
   }
   json["file"] = file;
   print_answer(json.dump(2, ' ', false, Json::error_handler_t::replace));

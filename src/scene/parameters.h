@@ -56,8 +56,9 @@ constexpr double kEaves = 1.5;
 
 namespace colod::parameters::survey {
 
-constexpr double kCell = 0.4;        // metres: finer than walls of sheds, about as photogrammetry
-constexpr double kMostCells = 64e6;  // of a map: a gibibyte
+constexpr double kCell = 0.4;          // metres: finer than walls of sheds, about as photogrammetry
+constexpr double kMostCells = 64e6;    // of a map: a gibibyte
+constexpr double kFarthestTile = 1e6;  // metres across, and from most tiles: a large country
 
 }  // namespace colod::parameters::survey
 

@@ -173,7 +173,9 @@ HeightMap survey(const SceneTiles& tiles, std::size_t image_memory) {
   HeightMap map;
   const Box& box = tiles.box();
   const Vec3 size = box.size();
-  map.cell = std::max(kCell, std::sqrt(size.x() * size.y() / kMostCells));
+  // A long map has a row of cells more than its area asks for.
+  map.cell = std::max({kCell, std::sqrt(size.x() * size.y() / kMostCells),
+                       4 * std::max(size.x(), size.y()) / kMostCells});
   map.origin = box.min.head<2>();
   map.width = static_cast<int>(std::ceil(size.x() / map.cell)) + 1;
   map.height = static_cast<int>(std::ceil(size.y() / map.cell)) + 1;

@@ -3,6 +3,8 @@
 #include "tiles.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <list>
 #include <map>
 #include <mutex>
@@ -47,6 +49,43 @@ Facts facts_of(const Source& s) {
     facts.area += cross.norm();
   }
   return facts;
+}
+
+/// Where most tiles lie; of two the one nearer to the frame's origin.
+Vec3 middle_of(const std::vector<Facts>& facts) {
+  Vec3 middle = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> all;
+    for (const Facts& f : facts)
+      if (f.faces > 0) all.push_back(f.box.center()[axis]);
+    if (all.empty()) return middle;
+    const auto at = all.begin() + static_cast<long>((all.size() - 1) / 2);
+    std::nth_element(all.begin(), at, all.end(),
+                     [](double a, double b) { return std::abs(a) < std::abs(b); });
+    middle[axis] = *at;
+  }
+  return middle;
+}
+
+/// One wrong vertex or transform would stretch the map of a whole place beyond all use.
+void drop_strays(std::vector<Facts>& facts) {
+  const auto drop = [](Facts& f, double reach, const std::string& what) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%s %.3g km: a transform or a vertex of it is wrong; the tile is left out",
+                  what.c_str(), reach / 1000);
+    f.problem = text, f.faces = 0;
+  };
+  for (Facts& f : facts)
+    if (const double size = f.box.size().maxCoeff();
+        f.faces > 0 && size > parameters::survey::kFarthestTile)
+      drop(f, size, "reaches over");
+  const Vec3 middle = middle_of(facts);
+  for (Facts& f : facts) {
+    if (f.faces == 0) continue;
+    const double off = (f.box.center() - middle).cwiseAbs().maxCoeff();
+    if (off > parameters::survey::kFarthestTile) drop(f, off, "lies apart from most tiles by");
+  }
 }
 
 using Matrix = Eigen::Matrix4d;
@@ -130,6 +169,8 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
       const Source source = read(i);
       facts[i] = facts_of(source);
       said[i] = source.warnings;
+      if (source.mesh.faces.empty() && !said[i].empty())  // all of them had to be left out
+        facts[i].problem = said[i].back(), said[i].pop_back();
       if (pieces && facts[i].faces > parameters::context::kMostFaces)
         parts[i] = cut(tiles[i], source);
     } catch (const Error& e) {
@@ -138,6 +179,7 @@ void SceneTiles::Impl::look_through(int coarser, bool may_turn) {
       facts[i].problem = std::string("cannot be read: ") + e.what();
     }
   });
+  drop_strays(facts);
   set_upright(facts, may_turn);
   std::map<std::string, std::pair<std::size_t, std::string>> by_text;  // how often, first tile
   std::vector<Tile> good;

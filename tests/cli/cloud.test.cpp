@@ -307,3 +307,34 @@ TEST_CASE("a cloud of one house in other formats is a building, and told of wher
   CHECK(degrees.exit_code == 3);
   CHECK_THAT(degrees.err, Contains("coordinates in degrees must be projected first"));
 }
+
+TEST_CASE("info tells where on Earth a cloud says that it is, and why it cannot") {
+  const TemporaryFolder folder;
+  std::vector<LasPoint> points;
+  for (int i = 0; i < 20; ++i)
+    points.push_back({{500000.0 + i, 5500000.0 + i % 5, 300.0 + i % 3}, 1});
+  const auto info = [&](const std::vector<LasRecord>& records) {
+    std::ofstream(folder / "cloud.las", std::ios::binary)
+        << with_records(las(points, 2, 0), records);
+    const Ended run = run_colod(folder.path(), "info cloud.las");
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return Json::parse(run.out);
+  };
+  const Json told = info({geokeys({{1024, 1}, {3072, 32632}})});
+  CHECK(told["place"]["crs"] == "EPSG:32632");
+  CHECK_THAT(told["place"]["name"].get<std::string>(), Contains("UTM zone 32N"));
+  CHECK_THAT(told["place"]["said_by"].get<std::string>(), Contains("cloud.las"));
+  const auto says = [](const Json& json, const std::string& word) {
+    for (const Json& warning : json["warnings"])
+      if (warning.get<std::string>().find(word) != std::string::npos) return true;
+    return false;
+  };
+  CHECK(!says(told, "degrees"));
+  const Json degrees = info({geokeys({{1024, 2}, {2048, 4326}})});
+  CHECK(degrees["place"].is_null());
+  CHECK(says(degrees, "degrees"));
+  const Json nowhere = info({});
+  CHECK(nowhere["place"].is_null());
+  CHECK(!says(nowhere, "degrees"));
+}

@@ -28,9 +28,9 @@ Ended build(const TempFolder& folder, const std::string& rest) {
 /// in four tiles.
 const std::vector<Box> kRow = {Box{{12, 14, 0}, {20, 24, 6}}, Box{{20, 14, 0}, {28, 24, 9}}};
 
-/// The finest tiles stand below `coarse`, one below another.
+/// The finest tiles stand below `coarse`, one below another; `beside` them others.
 std::string write_row(const TempFolder& folder, const std::string& root_members = "",
-                      const std::vector<std::string>& coarse = {}) {
+                      const std::vector<std::string>& coarse = {}, const std::string& beside = "") {
   const Mesh whole = terrain_with_boxes(40, 1, kRow);
   std::string children;
   for (int t = 0; t < 4; ++t) {
@@ -47,6 +47,7 @@ std::string write_row(const TempFolder& folder, const std::string& root_members 
     folder.write(name, b3dm_of(glb_of(y_up(part))));
     children += (t ? "," : "") + tile_of(name);
   }
+  children += beside;
   for (const std::string& name : coarse)
     children = tile_of(name, R"(,"refine":"REPLACE","children":[)" + children + "]", 1);
   return folder.write("tileset.json",
@@ -167,6 +168,27 @@ TEST_CASE("footprints that meet no surface say so and cost themselves only") {
                           Contains("'wide' reaches more than a kilometre") &&
                           Contains("gap: no surface of the scene"));
   CHECK(report(folder)["buildings"].size() == 2);
+}
+
+TEST_CASE("a tile that a wrong vertex or transform takes out of the world costs itself only") {
+  const TempFolder folder;
+  const double far = GENERATE(3e6, -4e8, 3e12);
+  const bool is_vertex = far < 1e9 && GENERATE(true, false);
+  CAPTURE(far, is_vertex);
+  Mesh mesh = terrain_with_boxes(10, 1, {});
+  if (is_vertex) mesh.vertices[0].x() = far;
+  folder.write("stray.b3dm", b3dm_of(glb_of(y_up(mesh))));
+  const std::string moved =
+      R"(,"transform":[1,0,0,0,0,1,0,0,0,0,1,0,)" + std::to_string(far) + ",0,0,1]";
+  write_row(folder, "", {}, "," + tile_of("stray.b3dm", is_vertex ? "" : moved));
+  const std::string plans = folder.write("plan.geojson", kPlan);
+  const Ended run = build(folder, folder.path.string() + " --footprints " + plans);
+  INFO(run.err);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.err, Contains("stray.b3dm: "));
+  CHECK_THAT(run.err, Contains(far < 1e9 ? "km: a transform or a vertex of it is wrong"
+                                         : "200 faces left out: a coordinate is not finite"));
+  for (const Json& b : report(folder)["buildings"]) CHECK(b["layers"][0]["watertight"] == true);
 }
 
 TEST_CASE("what goes not together is told before the work") {
