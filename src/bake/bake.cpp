@@ -11,6 +11,7 @@
 #include "charts.h"
 #include "core/error.h"
 #include "core/flat.h"
+#include "core/nearest.h"
 #include "core/parallel.h"
 #include "core/spread.h"
 #include "fill.h"
@@ -286,8 +287,8 @@ class Painter {
     if (face == kUnasked)
       face = found_beside(view, view.grid.at(x / n * n + n / 2, y / n * n + n / 2)).face;
     if (face < 0) return Finding::kNone;
-    const Vec3 weight = view.panes.of(face).weight(Vec2(x, y)).cwiseMax(0);
-    show(view, face, weight / weight.sum(), sum);
+    const Face& corners = source_.faces[static_cast<std::size_t>(face)];
+    show(view, face, nearest_weights(source_, corners, view.chart.lift(view.grid.at(x, y))), sum);
     return Finding::kNearest;
   }
 
