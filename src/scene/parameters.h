@@ -152,7 +152,8 @@ constexpr double kHue = 0.25;         // of the brightness: a channel over the m
 constexpr double kDark = 20;          // … and this, of 255, so that dark places have no hue
 constexpr double kBend = 0.3;         // metres a metre: by so much slopes change at a ridge
 constexpr double kLeastTinted = 100;  // m²: what is smaller is one house, whatever its colours
-constexpr double kLeastPatch = 4;     // m² without its rim: chimneys and skylights are smaller
+constexpr double kLeastCalm = 0.8;  // of a block, that does not change its colour: else it is noise
+constexpr double kLeastPatch = 4;   // m² without its rim: chimneys and skylights are smaller
 
 }  // namespace colod::parameters::patches
 

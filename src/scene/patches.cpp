@@ -150,6 +150,19 @@ class Tints {
   const std::vector<int>& region_;
 };
 
+/// A region that changes its colour nearly everywhere has no patches: its colours are noise.
+void keep_motley(const std::vector<int>& region, const std::vector<double>& cells,
+                 std::vector<char>& is_core) {
+  std::vector<double> calm(cells.size(), 0);
+  for (std::size_t i = 0; i < region.size(); ++i)
+    if (region[i] >= 0) calm[static_cast<std::size_t>(region[i])] += is_core[i];
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    if (region[i] < 0) continue;
+    const auto r = static_cast<std::size_t>(region[i]);
+    if (calm[r] < kLeastCalm * cells[r]) is_core[i] = 1;
+  }
+}
+
 }  // namespace
 
 std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& region) {
@@ -163,7 +176,7 @@ std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& reg
 std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& region) {
   std::vector<char> is_core(map.size());
   for (std::size_t i = 0; i < map.size(); ++i) is_core[i] = region[i] >= 0;
-  if (map.color.empty()) return grown(map, region, is_core, 0);
+  if (map.color.empty() || map.is_sharp) return grown(map, region, is_core, 0);
   const std::vector<double> cells = cells_of(region);
   const Tints tints(map, region);
   const int step = std::max(1, static_cast<int>(std::lround(kTintStep / map.cell)));
@@ -174,6 +187,7 @@ std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& reg
         continue;
       is_core[i] = !tints.changes(x, y, 1, 0, step) && !tints.changes(x, y, 0, 1, step);
     }
+  keep_motley(region, cells, is_core);
   return grown(map, region, shrunk(map, region, is_core), kLeastPatch / area_of(map, 1));
 }
 

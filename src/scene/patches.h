@@ -15,7 +15,8 @@ std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& reg
 
 /// Likewise, parted where the colour changes within kTintStep metres to either side and the surface
 /// does not bend, as it does at a ridge, whose sides have different light. Regions of less than
-/// kLeastTinted m² stay whole, and all do where there are no colours. O(cells).
+/// kLeastTinted m² stay whole, those that change their colour nearly everywhere, and all where
+/// there are no colours or those of single points. O(cells).
 std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& region);
 
 /// Per region, numbered from 0 on, its cells.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 #include <set>
 
 using namespace colod;
@@ -107,6 +108,9 @@ TEST_CASE("roofs of one height are parted where colours change, whichever way th
   HeightMap grey = four.map;
   grey.color.clear();
   CHECK(four.patches(part_at_tints(grey, four.region)) == 1);
+  HeightMap points = four.map;
+  points.is_sharp = true;
+  CHECK(four.patches(part_at_tints(points, four.region)) == 1);
 }
 
 TEST_CASE("the two sides of a ridge, small houses and what stands about on roofs are one patch") {
@@ -121,6 +125,20 @@ TEST_CASE("the two sides of a ridge, small houses and what stands about on roofs
   Roofs hall(60, 0.3, cell);
   hall.add(2, 2, 30, 20).add(8, 8, 1.2, 1.2, kRed).add(20, 12, 1.4, 1.4, kWhite);
   CHECK(hall.patches(part_at_tints(hall.map, hall.region)) == 1);
+}
+
+TEST_CASE("colours that are noise part nothing") {
+  const double size = GENERATE(11.0, 25.0);
+  const int stripe = GENERATE(1, 3);  // cells
+  Roofs roof(size + 4, 0.3, 0.4);
+  roof.add(2, 0, size, size);
+  std::mt19937 random(4);
+  std::vector<std::uint8_t> grey(roof.map.size());
+  for (std::size_t i = 0; i < grey.size(); ++i)
+    grey[i] = static_cast<std::uint8_t>(i % static_cast<std::size_t>(stripe) ? grey[i - 1]
+                                                                             : random() % 256);
+  for (std::size_t i = 0; i < grey.size(); ++i) roof.map.color[i] = {grey[i], 100, 90};
+  CHECK(roof.patches(part_at_tints(roof.map, roof.region)) == 1);
 }
 
 TEST_CASE("an empty map and one without a region have no patch") {
