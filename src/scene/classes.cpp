@@ -21,17 +21,6 @@ namespace {
 
 using namespace parameters::classes;
 
-/// Neighbours along rows and columns.
-template <typename Body>
-void for_each_neighbour(const HeightMap& map, std::size_t i, Body body) {
-  const auto w = static_cast<std::size_t>(map.width);
-  const std::size_t x = i % w, y = i / w;
-  if (x > 0) body(i - 1);
-  if (x + 1 < w) body(i + 1);
-  if (y > 0) body(i - w);
-  if (y + 1 < static_cast<std::size_t>(map.height)) body(i + w);
-}
-
 /// −1 … 1: how much green stands out of a colour's own brightness.
 float greenness(const Rgb& rgb) {
   const float r = rgb[0], g = rgb[1], b = rgb[2], all = r + g + b;

@@ -24,14 +24,9 @@ double area_of(const HeightMap& map, double cells) { return cells * map.cell * m
 template <typename Body>
 void for_each_beside(const HeightMap& map, const std::vector<int>& region, std::size_t i,
                      Body body) {
-  const auto w = static_cast<std::size_t>(map.width);
-  const auto visit = [&](std::size_t j) {
+  for_each_neighbour(map, i, [&](std::size_t j) {
     if (region[j] == region[i]) body(j);
-  };
-  if (i % w > 0) visit(i - 1);
-  if (i % w + 1 < w) visit(i + 1);
-  if (i >= w) visit(i - w);
-  if (i + w < map.size()) visit(i + w);
+  });
 }
 
 /// Cells that are in with all of the eight around them, of the same region.
@@ -150,7 +145,7 @@ class Tints {
   const std::vector<int>& region_;
 };
 
-/// A region that changes its colour nearly everywhere has no patches: its colours are noise.
+/// A region that changes its colour on too many cells has no patches: its colours are noise.
 void keep_motley(const std::vector<int>& region, const std::vector<double>& cells,
                  std::vector<char>& is_core) {
   std::vector<double> calm(cells.size(), 0);

@@ -8,6 +8,17 @@
 
 namespace colod {
 
+/// Neighbours along rows and columns.
+template <typename Body>
+void for_each_neighbour(const HeightMap& map, std::size_t i, Body body) {
+  const auto w = static_cast<std::size_t>(map.width);
+  const std::size_t x = i % w, y = i / w;
+  if (x > 0) body(i - 1);
+  if (x + 1 < w) body(i + 1);
+  if (y > 0) body(i - w);
+  if (y + 1 < static_cast<std::size_t>(map.height)) body(i + w);
+}
+
 /// Per cell the number of its patch, from 0 on; −1 where it is of no region. Two patches of one
 /// region are parted where no square of kNeck metres passes from one to the other; each holds the
 /// middles of such squares over kLeastCore m². `region`: per cell its number; −1: none. O(cells).
@@ -15,8 +26,8 @@ std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& reg
 
 /// Likewise, parted where the colour changes within kTintStep metres to either side and the surface
 /// does not bend, as it does at a ridge, whose sides have different light. Regions of less than
-/// kLeastTinted m² stay whole, those that change their colour nearly everywhere, and all where
-/// there are no colours or those of single points. O(cells).
+/// kLeastTinted m² stay whole, those that change their colour on more than a fifth of their
+/// cells, and all where there are no colours or those of single points. O(cells).
 std::vector<int> part_at_tints(const HeightMap& map, const std::vector<int>& region);
 
 /// Per region, numbered from 0 on, its cells.
