@@ -167,26 +167,10 @@ struct Regions {
   std::vector<double> cells;
 };
 
-/// Connected by pairs of neighbours that are one.
-template <typename IsOne>
-Regions regions_of(const HeightMap& map, const std::vector<char>& is_in, IsOne is_one) {
-  Regions out{std::vector<int>(map.size(), -1), {}};
-  for (std::size_t start = 0; start < map.size(); ++start) {
-    if (!is_in[start] || out.of_cell[start] >= 0) continue;
-    const int number = static_cast<int>(out.cells.size());
-    out.cells.push_back(0);
-    std::vector<std::size_t> open = {start};
-    out.of_cell[start] = number;
-    while (!open.empty()) {
-      const std::size_t i = open.back();
-      open.pop_back();
-      ++out.cells.back();
-      for_each_neighbour(map, i, [&](std::size_t j) {
-        if (is_in[j] && out.of_cell[j] < 0 && is_one(i, j))
-          out.of_cell[j] = number, open.push_back(j);
-      });
-    }
-  }
+/// All cells that are in and touch.
+Regions blocks_of(const HeightMap& map, const std::vector<char>& is_in) {
+  Regions out{connect(map, is_in, [](std::size_t, std::size_t) { return true; }), {}};
+  out.cells = cells_of(out.of_cell);
   return out;
 }
 
@@ -204,24 +188,11 @@ void take_rim(const HeightMap& map, const std::vector<char>& is_open, Regions& r
   }
 }
 
-/// Cells along which two regions meet; with −1 all that is in none.
-using Rims = std::vector<std::map<int, int>>;
-
-Rims rims_of(const HeightMap& map, const Regions& regions) {
-  Rims rims(regions.cells.size());
-  for (std::size_t i = 0; i < map.size(); ++i)
-    if (const int own = regions.of_cell[i]; own >= 0)
-      for_each_neighbour(map, i, [&](std::size_t j) {
-        if (regions.of_cell[j] != own) ++rims[static_cast<std::size_t>(own)][regions.of_cell[j]];
-      });
-  return rims;
-}
-
 /// Small regions, and those that another one mostly surrounds, join the one that they touch most,
 /// until none does.
 void join_small(const HeightMap& map, Regions& regions) {
   for (int round = 0; round < kRounds; ++round) {
-    const Rims rims = rims_of(map, regions);
+    const Rims rims = rims_of(map, regions.of_cell);
     UnionFind sets(rims.size());
     bool has_changed = false;
     for (std::size_t r = 0; r < rims.size(); ++r) {
@@ -338,7 +309,7 @@ void take_clutter(const HeightMap& map, const std::vector<char>& stands,
   for (std::size_t i = 0; i < map.size(); ++i)
     is_in[i] = stands[i] && building[i] < 0 &&
                (map.color.empty() || part(greenness(map.color[i]), kGrey, kGreen) < kRoof);
-  const Regions regions = regions_of(map, is_in, [](std::size_t, std::size_t) { return true; });
+  const Regions regions = blocks_of(map, is_in);
   std::vector<std::map<int, int>> rims(regions.cells.size());  // by building
   for (std::size_t i = 0; i < map.size(); ++i)
     if (const int own = regions.of_cell[i]; own >= 0)
@@ -380,13 +351,14 @@ std::vector<double> leafy_rims(const HeightMap& map, const std::vector<char>& st
   return leafy;
 }
 
-/// Trees are smooth where they were seen badly: what stands alone, is no larger than a crown, has
-/// no roof's colour and leaves around it is one. For maps with colours.
+/// Trees are smooth where they were seen badly: what stands alone, has leaves around it, and is as
+/// green as they, or no larger than a crown and has no roof's colour, is one. For maps with
+/// colours.
 void drop_crowns(const HeightMap& map, const std::vector<char>& stands, std::vector<float>& plant,
                  std::vector<int>& building) {
   std::vector<char> is_in(map.size());
   for (std::size_t i = 0; i < map.size(); ++i) is_in[i] = building[i] >= 0;
-  const Regions blocks = regions_of(map, is_in, [](std::size_t, std::size_t) { return true; });
+  const Regions blocks = blocks_of(map, is_in);
   const std::vector<double> leafy = leafy_rims(map, stands, blocks);
   std::vector<double> green(leafy.size(), 0);
   for (std::size_t i = 0; i < map.size(); ++i)
@@ -396,8 +368,8 @@ void drop_crowns(const HeightMap& map, const std::vector<char>& stands, std::vec
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!is_in[i]) continue;
     const auto b = static_cast<std::size_t>(blocks.of_cell[i]);
-    if (blocks.cells[b] * map.cell * map.cell < kLargestCrown && green[b] > kGreenish &&
-        leafy[b] > kLeafy)
+    const bool is_crown = blocks.cells[b] * map.cell * map.cell < kLargestCrown;
+    if (leafy[b] > kLeafy && green[b] > (is_crown ? kGreenish : kLeafGreen))
       building[i] = -1, plant[i] = 1;
   }
 }
@@ -420,10 +392,10 @@ SceneClasses classify(const HeightMap& map) {
   is_roof = opened(map, is_roof, static_cast<int>(std::lround(kNarrow / map.cell / 2)));
   for (std::size_t i = 0; i < map.told.size(); ++i)
     if (map.told[i] == SceneClass::kBuilding) is_roof[i] = is_open[i];
-  const Regions level = regions_of(map, is_roof, [&](std::size_t i, std::size_t j) {
+  const std::vector<int> level = connect(map, is_roof, [&](std::size_t i, std::size_t j) {
     return std::abs(steps.rise(i, j)) < kStep;
   });
-  Regions regions{part_at_necks(map, level.of_cell), {}};
+  Regions regions{part_at_necks(map, level), {}};
   regions.cells = cells_of(regions.of_cell);
   for (int round = 0; round < kRimRounds; ++round) take_rim(map, is_open, regions);
   join_small(map, regions);

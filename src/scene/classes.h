@@ -25,6 +25,11 @@ SceneClasses classify(const HeightMap& map);
 /// which roofs step or change their colour. O(cells). Deterministic.
 void part_rows(const HeightMap& map, SceneClasses& classes);
 
+/// What is narrow, small beside the building that it touches most, and touches it along a quarter
+/// of its rim (a canopy, stairs, the foot of a melted wall) becomes part of it. O(cells).
+/// Deterministic.
+void join_annexes(const HeightMap& map, SceneClasses& classes);
+
 /// The plan of each building: its cells' border, straightened along the building's own directions.
 /// Attributes: height over the ground and area.
 std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasses& classes);

@@ -129,7 +129,8 @@ constexpr double kAmid = 0.6;          // of what is rough that buildings are ar
 constexpr double kAround = 1.6;        // metres off: beyond melted rims
 constexpr double kLeafy = 0.55;        // of what is around a smooth crown: leaves …
 constexpr double kLargestCrown = 100;  // m²: … it is no larger …
-constexpr double kGreenish = 0;        // … and neither red nor blue
+constexpr double kGreenish = 0;        // … and neither red nor blue, …
+constexpr double kLeafGreen = 0.035;   // … or a copse: as green as leaves in shade
 constexpr int kRounds = 10;
 constexpr double kLeastBuilding = 8;  // m²: sheds
 // Metres; squares have an odd number of cells, so that at 0.4 m these are 2.8 and 2.0 wide.
@@ -179,6 +180,17 @@ constexpr double kLeastBlock = 150;     // m²: what is smaller is one house mor
 constexpr int kJoinRounds = 10;
 
 }  // namespace colod::parameters::party_walls
+
+// Chosen on the drawn footprints of two real scenes and on made-up places (seeds 1 to 7), all of
+// them development. docs/log/quality.md has the figures.
+namespace colod::parameters::annexes {
+
+constexpr double kAnnexWidth = 5;  // metres: canopies, stairs, melted walls; houses are wider
+constexpr double kAnnexShare = 1.0 / 12;  // of the building that it leans on
+constexpr double kLeaning = 0.25;         // of its rim, where it leans
+constexpr int kAnnexRounds = 4;           // an annex of an annex
+
+}  // namespace colod::parameters::annexes
 
 namespace colod::parameters::outlines {
 

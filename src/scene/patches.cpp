@@ -47,27 +47,14 @@ std::vector<char> shrunk(const HeightMap& map, const std::vector<int>& region,
   return out;
 }
 
-/// Numbers the connected cores of at least so many cells, and lists their cells; −1: none.
+/// Numbers the connected cores of at least so many cells; −1: none.
 std::vector<int> number_cores(const HeightMap& map, const std::vector<int>& region,
-                              const std::vector<char>& is_core, double least,
-                              std::vector<std::size_t>& cells) {
-  constexpr int kTooSmall = -2;
-  std::vector<int> core(map.size(), -1);
-  int cores = 0;
-  for (std::size_t start = 0; start < map.size(); ++start) {
-    if (!is_core[start] || core[start] != -1) continue;
-    std::vector<std::size_t> own = {start};
-    core[start] = cores;
-    for (std::size_t n = 0; n < own.size(); ++n)
-      for_each_beside(map, region, own[n], [&](std::size_t j) {
-        if (is_core[j] && core[j] == -1) core[j] = cores, own.push_back(j);
-      });
-    if (static_cast<double>(own.size()) < least)
-      for (const std::size_t i : own) core[i] = kTooSmall;
-    else
-      ++cores, cells.insert(cells.end(), own.begin(), own.end());
-  }
-  for (int& c : core) c = std::max(c, -1);
+                              const std::vector<char>& is_core, double least) {
+  std::vector<int> core =
+      connect(map, is_core, [&](std::size_t i, std::size_t j) { return region[i] == region[j]; });
+  const std::vector<double> cells = cells_of(core);
+  for (int& c : core)
+    if (c >= 0 && cells[static_cast<std::size_t>(c)] < least) c = -1;
   return core;
 }
 
@@ -75,8 +62,10 @@ std::vector<int> number_cores(const HeightMap& map, const std::vector<int>& regi
 /// one patch.
 std::vector<int> grown(const HeightMap& map, const std::vector<int>& region,
                        const std::vector<char>& is_core, double least) {
+  std::vector<int> core = number_cores(map, region, is_core, least);
   std::vector<std::size_t> open;
-  std::vector<int> core = number_cores(map, region, is_core, least, open);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (core[i] >= 0) open.push_back(i);
   for (std::size_t n = 0; n < open.size(); ++n)
     for_each_beside(map, region, open[n], [&](std::size_t j) {
       if (core[j] < 0) core[j] = core[open[n]], open.push_back(j);
@@ -159,6 +148,19 @@ void keep_motley(const std::vector<int>& region, const std::vector<double>& cell
 }
 
 }  // namespace
+
+Rims rims_of(const HeightMap& map, const std::vector<int>& region) {
+  Rims rims;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (region[i] < 0) continue;
+    const auto own = static_cast<std::size_t>(region[i]);
+    if (own >= rims.size()) rims.resize(own + 1);
+    for_each_neighbour(map, i, [&](std::size_t j) {
+      if (region[j] != region[i]) ++rims[own][region[j]];
+    });
+  }
+  return rims;
+}
 
 std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& region) {
   std::vector<char> is_core(map.size());

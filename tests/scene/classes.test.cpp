@@ -236,10 +236,10 @@ TEST_CASE("what stands about on a roof is the roof's, a tree beside it is not") 
   CHECK(place.overlap(found) > 0.95);
 }
 
-TEST_CASE("a smooth crown amid leaves is a plant, houses beside and amid trees are none") {
+TEST_CASE("a smooth crown or copse amid leaves is a plant, houses beside and amid trees are none") {
   const double size = GENERATE(6.0, 7.5, 9.0);
   CAPTURE(size);
-  constexpr Rgb kDull = {118, 120, 116}, kTiles = {170, 90, 80};
+  constexpr Rgb kDull = {118, 120, 116}, kTiles = {170, 90, 80}, kShade = {80, 88, 80};
   const auto found = [](double side, const Rgb& color, bool is_wood) {
     Place place(80, kLevel);
     if (is_wood)
@@ -252,7 +252,9 @@ TEST_CASE("a smooth crown amid leaves is a plant, houses beside and amid trees a
   CHECK(found(size, kDull, true) == 0);
   CHECK(found(size, kTiles, true) == 1);
   CHECK(found(size, kDull, false) == 1);
-  CHECK(found(14, kDull, true) == 1);
+  CHECK(found(2 * size, kDull, true) == 1);
+  CHECK(found(2 * size, kShade, true) == 0);
+  CHECK(found(2 * size, kShade, false) == 1);
 }
 
 TEST_CASE("two houses of one height that touch at a corner are two") {
