@@ -177,6 +177,8 @@ constexpr double kBeyond = 1.5;         // cells that a wall goes on at both end
 constexpr double kLeastRowHouse = 25;   // m² …
 constexpr double kLeastOfBlock = 0.02;  // … and of its block: halls have skylights and signs
 constexpr double kLeastBlock = 150;     // m²: what is smaller is one house more often than two
+constexpr double kWing = 2.5;           // metres that a row's houses stand out from each other …
+constexpr double kWingedHouse = 250;    // m²: … where the block may be one house with a wing
 constexpr int kJoinRounds = 10;
 
 }  // namespace colod::parameters::party_walls

@@ -117,8 +117,21 @@ struct Candidate {
   double score;
 };
 
+/// Metres that the building goes on for beyond an end of a line, on one side of it: there the line
+/// is where a wing begins.
+double overhang(const Turned& t, int x, int from, int to, int beside) {
+  int most = 0;
+  for (const int column : {x + beside, x - 1 - beside}) {
+    int below = 0, above = 0;
+    while (t.at(column, from - 1 - below) >= 0) ++below;
+    while (t.at(column, to + above) >= 0) ++above;
+    most = std::max({most, below, above});
+  }
+  return most * t.map.cell;
+}
+
 /// All lines between two columns, from border to border.
-std::vector<Candidate> candidates_of(const Turned& t) {
+std::vector<Candidate> candidates_of(const Turned& t, bool is_small) {
   const Strip strip(t.map.cell);
   const int beside = static_cast<int>(kHouseWidth / t.map.cell);
   std::vector<Candidate> out;
@@ -136,6 +149,7 @@ std::vector<Candidate> candidates_of(const Turned& t) {
         if (is_in) rows.push_back(v);
       }
       if (static_cast<double>(rows.size()) < kWhole * (y - from)) continue;
+      if (is_small && overhang(t, x, from, y, strip.far) > kWing) continue;
       const double score = score_of(t, rows, x, strip);
       if (score >= 1) out.push_back({x, from, y, score});
     }
@@ -163,9 +177,10 @@ std::vector<Candidate> strongest(std::vector<Candidate> all, double cell) {
 std::vector<PartyWall> find_party_walls(const HeightMap& map, const std::vector<int>& building,
                                         const std::vector<std::size_t>& cells, double direction) {
   std::vector<PartyWall> out;
+  const bool is_small = static_cast<double>(cells.size()) * map.cell * map.cell < kWingedHouse;
   for (const double turn : {0.0, kQuarterTurn}) {
     const Turned t = turned(map, building, cells, direction + turn);
-    for (const Candidate& c : strongest(candidates_of(t), map.cell))
+    for (const Candidate& c : strongest(candidates_of(t, is_small), map.cell))
       out.push_back({t.place(c.x, c.from - kBeyond), t.place(c.x, c.to + kBeyond), c.score});
   }
   std::stable_sort(out.begin(), out.end(),

@@ -92,6 +92,36 @@ TEST_CASE("what is alike, too small or too deep is not parted") {
   }
 }
 
+TEST_CASE("a house with a lower wing is one, two houses that stand out from each other are two") {
+  const auto parted = [](double turned, double depth, double from) {
+    HeightMap map;
+    map.cell = 0.4, map.width = map.height = 150;
+    SceneClasses classes;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        const Vec2 p = map.middle(x, y) - Vec2(25, 10);
+        const double u = p.x() * std::cos(turned) + p.y() * std::sin(turned);
+        const double v = p.y() * std::cos(turned) - p.x() * std::sin(turned);
+        const bool is_house = u > 0 && u < 9 && v > 0 && v < 12;
+        const bool is_other = u >= 9 && u < 17 && v > from && v < from + depth;
+        map.top.push_back(is_house ? 6 : is_other ? 5.5f : 0);
+        map.color.push_back({120, 120, 120});
+        classes.building.push_back(is_house || is_other ? 0 : -1);
+      }
+    classes.buildings = 1;
+    classes.ground.assign(map.size(), 0);
+    part_rows(map, classes);
+    return classes.buildings;
+  };
+  for (const double turned : {0.0, 0.35}) {
+    CAPTURE(turned);
+    CHECK(parted(turned, 7, 0) == 1);
+    CHECK(parted(turned, 6.5, 3) == 1);
+    CHECK(parted(turned, 12, 0) == 2);
+    CHECK(parted(turned, 12, 1.2) == 2);
+  }
+}
+
 TEST_CASE("an area of another colour is a house in a block of houses, and a sign on a hall") {
   const auto parted = [](double length, double depth) {
     HeightMap map;
