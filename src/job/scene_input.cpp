@@ -408,7 +408,7 @@ Inputs open_scene(const std::string& input, const std::string& why, const ReadOp
   if (choice.footprints.empty() || choice.context != ContextMode::kNone) {
     map = tiles.surface() ? *tiles.surface() : survey(tiles, kSurveyImages);
     classes = classify(map);
-    if (choice.footprints.empty()) part_rows(map, classes), join_annexes(map, classes);
+    if (choice.footprints.empty()) part_rows(map, classes), settle_annexes(map, classes);
     out.classes = areas_of(map, classes);
   }
   std::vector<Footprint> footprints = footprints_of(tiles, choice, place, map, classes, out);

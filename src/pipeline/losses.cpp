@@ -40,28 +40,29 @@ std::string percent(double share) {
 }
 
 std::string describe(const LeftOut& l) {
-  char text[200];
+  char text[280];
   switch (l.reason) {
     case LeftOut::Reason::kLost:
       if (l.volume < 0) {
         std::snprintf(
             text, sizeof text,
             "%.3g m2, %s of the surface, is on no layer: up to %.1f m from the finest one; "
-            "is it one building? --split component meshes pieces one by one",
+            "is it one building? --split component meshes pieces one by one, in a place "
+            "--footprints parts them",
             l.area, percent(l.share).c_str(), l.farthest);
         return text;
       }
       std::snprintf(
           text, sizeof text,
           "a body of %.3g m3, %s of the volume, is on no layer: %.3g m2 of surface, up to "
-          "%.1f m from the finest one; --split component meshes bodies one by one",
+          "%.1f m from the finest one; --split component meshes bodies one by one, in a place "
+          "--footprints parts them",
           l.volume, percent(l.volume_share).c_str(), l.area, l.farthest);
       return text;
     case LeftOut::Reason::kGround:
       std::snprintf(text, sizeof text,
                     "%s of the surface is taken for ground and what stands about on it, and left "
-                    "out: is this "
-                    "a piece of a scene?",
+                    "out: is this a piece of a scene, or its footprint too large?",
                     percent(l.share).c_str());
       return text;
     default:
@@ -74,12 +75,13 @@ std::string describe(const LeftOut& l) {
 }
 
 std::string describe_ragged(const Looks& looks) {
-  char text[240];
+  char text[320];
   std::snprintf(
       text, sizeof text,
       "%.3g m2 of its finest layer stand where the source shows nothing or are thin sheets, %s as "
-      "much "
-      "as it has walls: is this a building, and whole? --scene scene takes it for a place",
+      "much as it has walls: is this a building, and whole? --scene scene takes a file for a "
+      "place, "
+      "where --footprints tells what buildings are",
       looks.ragged, percent(looks.ragged / std::max(1e-9, looks.wall_area)).c_str());
   return text;
 }

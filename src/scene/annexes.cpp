@@ -1,6 +1,7 @@
 // Based on: distances in steps of 3 and 4 (G. Borgefors, Distance transformations in digital
 // images, 1986).
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 
 #include "classes.h"
@@ -53,13 +54,26 @@ std::vector<double> widths_of(const HeightMap& map, const std::vector<int>& buil
   return width;
 }
 
-/// Per building the one that it is an annex of, or itself.
-std::vector<int> hosts_of(const HeightMap& map, const std::vector<int>& building) {
-  const std::vector<double> cells = cells_of(building);
-  const std::vector<double> width = widths_of(map, building, cells.size());
-  const Rims rims = rims_of(map, building);
-  std::vector<int> host(cells.size());
-  std::iota(host.begin(), host.end(), 0);
+/// Per building the mean height over the ground; metres.
+std::vector<double> heights_of(const HeightMap& map, const SceneClasses& classes,
+                               const std::vector<double>& cells) {
+  std::vector<double> height(cells.size(), 0);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (const int b = classes.building[i]; b >= 0)
+      height[static_cast<std::size_t>(b)] += map.top[i] - classes.ground[i];
+  for (std::size_t b = 0; b < cells.size(); ++b) height[b] /= cells[b];
+  return height;
+}
+
+/// Per building what becomes of its cells: the building that they are part of, mostly itself; −1:
+/// none.
+std::vector<int> fates_of(const HeightMap& map, const SceneClasses& classes) {
+  const std::vector<double> cells = cells_of(classes.building);
+  const std::vector<double> width = widths_of(map, classes.building, cells.size());
+  const std::vector<double> height = heights_of(map, classes, cells);
+  const Rims rims = rims_of(map, classes.building);
+  std::vector<int> fate(cells.size());
+  std::iota(fate.begin(), fate.end(), 0);
   for (std::size_t b = 0; b < cells.size(); ++b) {
     if (width[b] > kAnnexWidth) continue;
     int all = 0, most = 0, to = -1;
@@ -67,19 +81,25 @@ std::vector<int> hosts_of(const HeightMap& map, const std::vector<int>& building
       all += count;
       if (other >= 0 && count > most) most = count, to = other;
     }
-    if (most > kLeaning * all && cells[b] < kAnnexShare * cells[static_cast<std::size_t>(to)])
-      host[b] = to;
+    if (to < 0 || most < kLeaning * all) continue;
+    const auto host = static_cast<std::size_t>(to);
+    if (cells[b] < kAnnexShare * cells[host])
+      fate[b] = height[b] > kAnnexHeight * height[host] ? to : -1;
   }
-  return host;
+  return fate;
 }
 
 }  // namespace
 
-void join_annexes(const HeightMap& map, SceneClasses& classes) {
+void settle_annexes(const HeightMap& map, SceneClasses& classes) {
   for (int round = 0; round < kAnnexRounds; ++round) {
-    const std::vector<int> host = hosts_of(map, classes.building);
-    for (int& b : classes.building)
-      if (b >= 0) b = host[static_cast<std::size_t>(b)];
+    const std::vector<int> fate = fates_of(map, classes);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      int& b = classes.building[i];
+      if (b < 0) continue;
+      b = fate[static_cast<std::size_t>(b)];
+      if (b < 0) classes.of_cell[i] = SceneClass::kRest;
+    }
     const int before = classes.buildings;
     classes.buildings = renumber(classes.building);
     if (classes.buildings == before) return;

@@ -26,9 +26,10 @@ SceneClasses classify(const HeightMap& map);
 void part_rows(const HeightMap& map, SceneClasses& classes);
 
 /// What is narrow, small beside the building that it touches most, and touches it along a quarter
-/// of its rim (a canopy, stairs, the foot of a melted wall) becomes part of it. O(cells).
+/// of its rim is no building: at half that one's height and more (the foot of a melted wall,
+/// stairs) it becomes part of it, lower (goods, hedges, canopies) it is the rest. O(cells).
 /// Deterministic.
-void join_annexes(const HeightMap& map, SceneClasses& classes);
+void settle_annexes(const HeightMap& map, SceneClasses& classes);
 
 /// The plan of each building: its cells' border, straightened along the building's own directions.
 /// Attributes: height over the ground and area.

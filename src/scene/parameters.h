@@ -187,10 +187,12 @@ constexpr int kJoinRounds = 10;
 // them development. docs/log/quality.md has the figures.
 namespace colod::parameters::annexes {
 
-constexpr double kAnnexWidth = 5;  // metres: canopies, stairs, melted walls; houses are wider
-constexpr double kAnnexShare = 1.0 / 12;  // of the building that it leans on
+constexpr double kAnnexWidth = 5;         // metres: houses are wider
+constexpr double kAnnexShare = 1.0 / 12;  // of the area of the building that it leans on
 constexpr double kLeaning = 0.25;         // of its rim, where it leans
-constexpr int kAnnexRounds = 4;           // an annex of an annex
+constexpr double kAnnexHeight =
+    0.5;  // of the building's: a wall that has melted, stairs; what is lower is none
+constexpr int kAnnexRounds = 4;  // one leans on another
 
 }  // namespace colod::parameters::annexes
 

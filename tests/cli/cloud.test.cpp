@@ -294,7 +294,7 @@ TEST_CASE("a cloud of one house in other formats is a building, and told of wher
   const Ended house = build(folder, path);
   INFO(house.err);
   CHECK(house.exit_code == 1);  // nothing tells its plot from it, which is told
-  CHECK_THAT(house.err, Contains("--scene scene takes it for a place"));
+  CHECK_THAT(house.err, Contains("--scene scene takes a file for a place"));
   CHECK(house.err.find("taken for a scene") == std::string::npos);
   const std::string block = (folder / "block.ply").string();
   std::ofstream(block, std::ios::binary) << ply_of(place_of(2), PlyCoding::kBig, false);
