@@ -165,9 +165,11 @@ namespace colod::parameters::party_walls {
 constexpr double kBlurred = 0.6;        // metres beside a line in which heights are of both sides
 constexpr double kStripEnd = 1.6;       // metres beside a line that are compared
 constexpr double kPiece = 3.5;          // metres of a line: roofs slope alike along it
+constexpr double kEnd = 1.6;            // metres of each end of a line: roof houses do not reach it
 constexpr double kLeastStep = 0.15;     // metres of height across a line
 constexpr double kLeastTint = 25;       // of 255: how one channel of the colour changes across it
-constexpr double kAlike = 0.6;          // of a line's pieces that step the same way
+constexpr double kAlike = 0.6;          // of a line's pieces that step the same way …
+constexpr double kAlikeStep = 0.5;      // … by more than this share of the median; both ends do
 constexpr double kShortest = 4.5;       // metres of a line
 constexpr double kLongest = 25;         // metres of a line: halls are deeper than houses
 constexpr double kHouseWidth = 3.5;     // metres beside a line …

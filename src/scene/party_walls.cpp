@@ -72,41 +72,62 @@ struct Strip {
         far(std::max(near + 1, static_cast<int>(kStripEnd / cell))) {}
 };
 
-/// How a value steps across a line, besides what it changes by on either side of it: per piece of
-/// the line, since roofs slope another way farther on; none where few pieces step alike.
+/// A piece of a line: how a value steps across it, and how much of that slopes on either side make.
+struct Step {
+  double whole = 0, of_slope = 0;
+  /// Over what slopes may make of it.
+  double rest() const { return std::copysign(std::max(0.0, std::abs(whole) - of_slope), whole); }
+};
+
+/// Over the rows `from` … `to` of a line.
 template <typename Value>
-double step_across(const std::vector<int>& rows, const Strip& strip, std::size_t piece,
-                   Value value) {
-  std::vector<double> steps;
+Step step_of(const std::vector<int>& rows, std::size_t from, std::size_t to, const Strip& strip,
+             Value value) {
   const int depth = strip.far - strip.near;
-  const double span = static_cast<double>(strip.near + strip.far + 1) / depth;
-  for (std::size_t i = 0; i + piece / 2 < rows.size(); i += piece) {
-    double step = 0, left = 0, right = 0;
-    const std::size_t end = std::min(rows.size(), i + piece);
-    for (std::size_t r = i; r < end; ++r) {
-      const int y = rows[r];
-      for (int k = strip.near; k <= strip.far; ++k)
-        step += (value(k, y) - value(-1 - k, y)) / (depth + 1);
-      left += value(-1 - strip.near, y) - value(-1 - strip.far, y);
-      right += value(strip.far, y) - value(strip.near, y);
-    }
-    const double slope = std::max(std::abs(left), std::abs(right)) * span;
-    steps.push_back(std::copysign(std::max(0.0, std::abs(step) - slope), step) /
-                    static_cast<double>(end - i));
+  double step = 0, left = 0, right = 0;
+  for (std::size_t r = from; r < to; ++r) {
+    const int y = rows[r];
+    for (int k = strip.near; k <= strip.far; ++k)
+      step += (value(k, y) - value(-1 - k, y)) / (depth + 1);
+    left += value(-1 - strip.near, y) - value(-1 - strip.far, y);
+    right += value(strip.far, y) - value(strip.near, y);
   }
+  const double span = static_cast<double>(strip.near + strip.far + 1) / depth;
+  const double count = static_cast<double>(to - from);
+  return {step / count, std::max(std::abs(left), std::abs(right)) * span / count};
+}
+
+/// How a value steps across a line, besides what it changes by on either side of it: per piece of
+/// the line, since roofs slope another way farther on; none where few pieces step alike, or where
+/// it does not step at both ends, as beside a roof house.
+template <typename Value>
+double step_across(const std::vector<int>& rows, const Strip& strip, double cell, Value value) {
+  const auto cells = [cell](double metres) {
+    return static_cast<std::size_t>(std::max(1L, std::lround(metres / cell)));
+  };
+  const std::size_t piece = cells(kPiece), end = std::min(rows.size(), cells(kEnd));
+  std::vector<double> steps;
+  for (std::size_t i = 0; i + piece / 2 < rows.size(); i += piece)
+    steps.push_back(step_of(rows, i, std::min(rows.size(), i + piece), strip, value).rest());
+  if (steps.empty()) return 0;
   const double middle = upper_median(steps);
-  double alike = 0;
-  for (const double step : steps) alike += step * middle > 0 && step / middle > 0.5;
-  return alike < kAlike * static_cast<double>(steps.size()) ? 0 : std::abs(middle);
+  const auto is_alike = [middle](double step) {
+    return step * middle > 0 && step / middle > kAlikeStep;
+  };
+  const auto alike = std::count_if(steps.begin(), steps.end(), is_alike);
+  if (static_cast<double>(alike) < kAlike * static_cast<double>(steps.size()) ||
+      !is_alike(step_of(rows, 0, end, strip, value).whole) ||
+      !is_alike(step_of(rows, rows.size() - end, rows.size(), strip, value).whole))
+    return 0;
+  return std::abs(middle);
 }
 
 double score_of(const Turned& t, const std::vector<int>& rows, int x, const Strip& strip) {
-  const auto piece = static_cast<std::size_t>(std::max(1L, std::lround(kPiece / t.map.cell)));
   const double step =
-      step_across(rows, strip, piece, [&](int k, int y) { return double(t.top(x + k, y)); });
+      step_across(rows, strip, t.map.cell, [&](int k, int y) { return double(t.top(x + k, y)); });
   double tint = 0;
   for (std::size_t c = 0; c < 3 && !t.map.color.empty(); ++c)
-    tint = std::max(tint, step_across(rows, strip, piece, [&](int k, int y) {
+    tint = std::max(tint, step_across(rows, strip, t.map.cell, [&](int k, int y) {
                       return double(t.map.color[static_cast<std::size_t>(t.at(x + k, y))][c]);
                     }));
   return std::hypot(step / kLeastStep, tint / kLeastTint);

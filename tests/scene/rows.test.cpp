@@ -122,6 +122,29 @@ TEST_CASE("a house with a lower wing is one, two houses that stand out from each
   }
 }
 
+TEST_CASE("an office with a roof house is one building") {
+  for (const double depth : {11.0, 14.0})
+    for (const double gap : {1.6, 3.0}) {
+      CAPTURE(depth, gap);
+      HeightMap map;
+      map.cell = 0.4, map.width = map.height = 100;
+      SceneClasses classes;
+      for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+          const Vec2 p = map.middle(x, y) - Vec2(8, 8);
+          const bool is_in = p.x() > 0 && p.x() < 20 && p.y() > 0 && p.y() < depth;
+          const bool is_top = p.x() > 6 && p.x() < 13 && p.y() > gap && p.y() < depth - gap;
+          map.top.push_back(is_top ? 12 : is_in ? 9.6f : 0);
+          map.color.push_back(is_in ? Rgb{160, 160, 155} : Rgb{120, 120, 120});
+          classes.building.push_back(is_in ? 0 : -1);
+        }
+      classes.buildings = 1;
+      classes.ground.assign(map.size(), 0);
+      part_rows(map, classes);
+      CHECK(classes.buildings == 1);
+    }
+}
+
 TEST_CASE("an area of another colour is a house in a block of houses, and a sign on a hall") {
   const auto parted = [](double length, double depth) {
     HeightMap map;
