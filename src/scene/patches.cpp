@@ -163,6 +163,7 @@ Rims rims_of(const HeightMap& map, const std::vector<int>& region) {
 }
 
 std::vector<int> part_at_necks(const HeightMap& map, const std::vector<int>& region) {
+  if (region.empty()) return {};  // cells of an empty map have no size
   std::vector<char> is_core(map.size());
   for (std::size_t i = 0; i < map.size(); ++i) is_core[i] = region[i] >= 0;
   const int rings = static_cast<int>(kNeck / map.cell / 2);
