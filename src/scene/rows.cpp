@@ -95,8 +95,10 @@ std::vector<double> least_houses(const HeightMap& map, const std::vector<int>& b
   std::vector<double> least(parts, kLeastRowHouse / map.cell / map.cell);
   for (std::size_t i = 0; i < map.size(); ++i)
     if (part[i] >= 0) {
+      const double whole = block[static_cast<std::size_t>(building[i])];
+      const bool is_pair = whole * map.cell * map.cell < kLeastBlock;
       double& own = least[static_cast<std::size_t>(part[i])];
-      own = std::max(own, kLeastOfBlock * block[static_cast<std::size_t>(building[i])]);
+      own = std::max(own, (is_pair ? kPairShare : kLeastOfBlock) * whole);
     }
   return least;
 }
@@ -137,7 +139,7 @@ ClosedSides party_walls_of(const HeightMap& map, const SceneClasses& classes) {
   const auto borders = borders_of(map, classes.building, classes.buildings);
   for (std::size_t b = 0; b < cells.size(); ++b) {
     const double area = static_cast<double>(cells[b].size()) * map.cell * map.cell;
-    if (area < kLeastBlock) continue;
+    if (area < kLeastPair) continue;
     const auto longest = std::max_element(borders[b].begin(), borders[b].end(),
                                           [](auto& u, auto& v) { return u.size() < v.size(); });
     const Ring ring = with_fewer_corners(map, *longest);

@@ -78,6 +78,15 @@ TEST_CASE("rows are parted where roofs step, turned and in cells of any size") {
     }
 }
 
+TEST_CASE("two houses of a size are a pair, a small house with a lower third is one") {
+  for (const double angle : {0.0, 0.3, 1.2}) {
+    CAPTURE(angle);
+    CHECK(Row({{6, 6}, {6, 7}}, angle, 0.4).found(2) == 2);
+    CHECK(Row({{8, 6}, {3.8, 7}}, angle, 0.4).classes.buildings == 1);
+    CHECK(Row({{4, 6}, {4.5, 7}}, angle, 0.4).classes.buildings == 1);
+  }
+}
+
 TEST_CASE("rows of one height are parted where their colour changes") {
   const Row row({{7, 6}, {8, 6, {90, 90, 95}}, {6, 6, {190, 110, 90}}}, 0.2, 0.4);
   CHECK(row.classes.buildings == 3);
