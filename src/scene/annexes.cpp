@@ -1,7 +1,6 @@
 // Based on: distances in steps of 3 and 4 (G. Borgefors, Distance transformations in digital
 // images, 1986).
 #include <algorithm>
-#include <cstdlib>
 #include <numeric>
 
 #include "classes.h"
@@ -55,8 +54,8 @@ std::vector<double> widths_of(const HeightMap& map, const std::vector<int>& buil
 }
 
 /// Per building the mean height over the ground; metres.
-std::vector<double> heights_of(const HeightMap& map, const SceneClasses& classes,
-                               const std::vector<double>& cells) {
+std::vector<double> mean_heights_of(const HeightMap& map, const SceneClasses& classes,
+                                    const std::vector<double>& cells) {
   std::vector<double> height(cells.size(), 0);
   for (std::size_t i = 0; i < map.size(); ++i)
     if (const int b = classes.building[i]; b >= 0)
@@ -70,7 +69,7 @@ std::vector<double> heights_of(const HeightMap& map, const SceneClasses& classes
 std::vector<int> fates_of(const HeightMap& map, const SceneClasses& classes) {
   const std::vector<double> cells = cells_of(classes.building);
   const std::vector<double> width = widths_of(map, classes.building, cells.size());
-  const std::vector<double> height = heights_of(map, classes, cells);
+  const std::vector<double> height = mean_heights_of(map, classes, cells);
   const Rims rims = rims_of(map, classes.building);
   std::vector<int> fate(cells.size());
   std::iota(fate.begin(), fate.end(), 0);
@@ -92,6 +91,7 @@ std::vector<int> fates_of(const HeightMap& map, const SceneClasses& classes) {
 }  // namespace
 
 void settle_annexes(const HeightMap& map, SceneClasses& classes) {
+  if (!map.told.empty()) return;
   for (int round = 0; round < kAnnexRounds; ++round) {
     const std::vector<int> fate = fates_of(map, classes);
     for (std::size_t i = 0; i < map.size(); ++i) {

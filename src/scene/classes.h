@@ -27,8 +27,8 @@ void part_rows(const HeightMap& map, SceneClasses& classes);
 
 /// What is narrow, small beside the building that it touches most, and touches it along a quarter
 /// of its rim is no building: at half that one's height and more (the foot of a melted wall,
-/// stairs) it becomes part of it, lower (goods, hedges, canopies) it is the rest. O(cells).
-/// Deterministic.
+/// stairs) it becomes part of it, lower (goods, hedges, canopies) it is the rest. What a
+/// source tells is believed: nothing changes. O(cells). Deterministic.
 void settle_annexes(const HeightMap& map, SceneClasses& classes);
 
 /// The plan of each building: its cells' border, straightened along the building's own directions.

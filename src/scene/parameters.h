@@ -179,8 +179,8 @@ constexpr double kBeyond = 1.5;         // cells that a wall goes on at both end
 constexpr double kLeastRowHouse = 25;   // m² …
 constexpr double kLeastOfBlock = 0.02;  // … and of its block: halls have skylights and signs
 constexpr double kLeastBlock = 150;   // m²: what is smaller is one house more often than two, …
-constexpr double kLeastPair = 100;    // … or two …
-constexpr double kPairShare = 0.4;    // … that have so much of it each at least
+constexpr double kLeastPair = 100;    // … from so much on also two …
+constexpr double kPairShare = 0.4;    // … that have this share of it each at least
 constexpr double kWing = 2.5;         // metres that a row's houses stand out from each other …
 constexpr double kWingedHouse = 250;  // m²: … where the block may be one house with a wing
 constexpr int kJoinRounds = 10;
@@ -194,9 +194,8 @@ namespace colod::parameters::annexes {
 constexpr double kAnnexWidth = 5;         // metres: houses are wider
 constexpr double kAnnexShare = 1.0 / 12;  // of the area of the building that it leans on
 constexpr double kLeaning = 0.25;         // of its rim, where it leans
-constexpr double kAnnexHeight =
-    0.5;  // of the building's: a wall that has melted, stairs; what is lower is none
-constexpr int kAnnexRounds = 4;  // one leans on another
+constexpr double kAnnexHeight = 0.5;      // of the building's: walls that have melted, stairs
+constexpr int kAnnexRounds = 4;           // one leans on another
 
 }  // namespace colod::parameters::annexes
 

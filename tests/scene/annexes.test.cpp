@@ -20,7 +20,8 @@ struct Settled {
 };
 
 /// These, turned; those that come first lie on top.
-Settled settled(const std::vector<Plan>& plans, double angle = 0, double cell = 0.4) {
+Settled settled(const std::vector<Plan>& plans, double angle = 0, double cell = 0.4,
+                bool is_told = false) {
   HeightMap map;
   map.cell = cell, map.width = map.height = static_cast<int>(110 / cell);
   const Vec2 along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
@@ -42,6 +43,7 @@ Settled settled(const std::vector<Plan>& plans, double angle = 0, double cell = 
       classes.building.push_back(own);
     }
   classes.ground.assign(map.size(), 0);
+  if (is_told) map.told = classes.of_cell;
   settle_annexes(map, classes);
   Settled out{classes.buildings, 0, 0};
   bool is_right = true;
@@ -89,6 +91,10 @@ TEST_CASE("a house that leans on a hall, or is not far smaller than its neighbou
 TEST_CASE("what stands apart from a hall, or touches it with its end, stays") {
   CHECK(settled({kHall, {5, 31, 30, 4}}).buildings == 2);
   CHECK(settled({kHall, {5, 30, 4, 30}}).buildings == 2);
+}
+
+TEST_CASE("what a source tells to be buildings stays so") {
+  CHECK(settled({kHall, {5, 30, 30, 4, 2.5}}, 0, 0.4, true).rest == 0);
 }
 
 TEST_CASE("a place without buildings has no annexes") { CHECK(settled({}).buildings == 0); }
