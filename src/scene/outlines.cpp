@@ -76,12 +76,15 @@ std::vector<Footprint> outline_buildings(const HeightMap& map, const SceneClasse
   const auto borders = borders_of(map, classes.building, classes.buildings);
   for (std::size_t b = 0; b < borders.size(); ++b) {
     Footprint footprint;
-    double direction = NAN, area = 0;
-    std::vector<Ring> outer, holes;
+    double direction = NAN, area = 0, largest = 0;
+    std::vector<Ring> rings, outer, holes;
     for (const std::vector<CellCorner>& corners : borders[b]) {
-      Ring ring = straightened(map, corners, direction);
+      rings.push_back(straightened(map, corners, direction));
+      if (!rings.back().empty()) largest = std::max(largest, signed_area(rings.back()));
+    }
+    for (Ring& ring : rings) {
       const double own = ring.empty() ? 0 : signed_area(ring);
-      if (own > kLeastPart)
+      if (own > 0 && own >= std::min(kLeastPart, largest))
         outer.push_back(std::move(ring));
       else if (own < -kLeastHole)
         holes.push_back(std::move(ring));

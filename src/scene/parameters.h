@@ -204,7 +204,7 @@ namespace colod::parameters::outlines {
 constexpr double kStraight = 0.6;  // metres off a side: a cell and a half
 constexpr double kSquare = 0.3;    // radians off a main direction
 constexpr double kAreaChange = 0.1;
-constexpr double kLeastPart = 8;   // m²
+constexpr double kLeastPart = 8;   // m²: the largest part of a building is always one
 constexpr double kLeastHole = 12;  // m², of a courtyard
 
 }  // namespace colod::parameters::outlines

@@ -304,3 +304,24 @@ TEST_CASE("gaps in a map are nothing, and an empty place has no building") {
   for (float& z : map.top) z = NAN;
   CHECK(classify(map).buildings == 0);
 }
+
+TEST_CASE("the least building has a plan, too, however its corners are cut") {
+  for (const double radius : {1.7, 2.1, 4.0}) {
+    HeightMap map;
+    map.cell = 0.4, map.width = map.height = 40;
+    SceneClasses classes;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        const Vec2 p = map.middle(x, y) - Vec2(8, 8);
+        const bool is_in = std::abs(p.x()) + std::abs(p.y()) < radius;
+        classes.building.push_back(is_in ? 0 : -1);
+        map.top.push_back(is_in ? 3 : 0);
+      }
+    classes.buildings = 1;
+    classes.ground.assign(map.size(), 0);
+    CAPTURE(radius);
+    const std::vector<Footprint> plans = outline_buildings(map, classes);
+    REQUIRE(plans.size() == 1);
+    CHECK(std::stod(plans[0].attributes.at(2).second) > radius * radius);
+  }
+}
