@@ -3,6 +3,7 @@
 // Differs: reads what colod writes; of other files, what it does not know is left out, not guessed.
 #include <algorithm>
 #include <bit>
+#include <climits>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -57,8 +58,14 @@ bool read_draco(Glb& glb, const Json& primitive, const std::string& place, MeshC
   const DracoCounts stated = stated_counts(stream);
   glb.spend(stated.faces + stated.vertices);
   const DracoContent draco = decode_draco(stream);
+  const Json& attributes = extension.at("attributes");
+  const auto attribute_of = [&](const char* name) {
+    if (!attributes.contains(name)) return draco.attributes.end();
+    const std::size_t id = whole_number(attributes.at(name));
+    return id > INT_MAX ? draco.attributes.end() : draco.attributes.find(static_cast<int>(id));
+  };
   const auto values = [&](const char* name, int components) -> const std::vector<double>* {
-    const auto found = draco.attributes.find(extension.at("attributes").value(name, -1));
+    const auto found = attribute_of(name);
     if (found == draco.attributes.end() || found->second.components != components) {
       glb.report("draco-ids", place,
                  std::string(name) + " names no Draco attribute of " + std::to_string(components) +
@@ -67,7 +74,7 @@ bool read_draco(Glb& glb, const Json& primitive, const std::string& place, MeshC
     }
     return &found->second.values;
   };
-  for (const auto& [name, id] : extension.at("attributes").items())
+  for (const auto& [name, id] : attributes.items())
     if (!primitive.at("attributes").contains(name))
       glb.report("draco-ids", place, name + " is not an attribute of the primitive");
   const auto *positions = values("POSITION", 3), *normals = values("NORMAL", 3);
