@@ -66,6 +66,28 @@ struct Row {
   }
 };
 
+/// Into how many buildings one block is parted, on a square map. `roof`: of a place, in metres from
+/// its corner, the roof's height, 0 where there is none, and its colour.
+template <typename Roof>
+int parted(double side, Roof roof) {
+  HeightMap map;
+  map.cell = 0.4, map.width = map.height = static_cast<int>(side / map.cell);
+  SceneClasses classes;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const auto [height, color] = roof(map.middle(x, y));
+      map.top.push_back(height);
+      map.color.push_back(color);
+      classes.building.push_back(height > 0 ? 0 : -1);
+    }
+  classes.buildings = 1;
+  classes.ground.assign(map.size(), 0);
+  part_rows(map, classes);
+  return classes.buildings;
+}
+
+constexpr Rgb kGrey = {120, 120, 120};
+
 }  // namespace
 
 TEST_CASE("rows are parted where roofs step, turned and in cells of any size") {
@@ -102,32 +124,22 @@ TEST_CASE("what is alike, too small or too deep is not parted") {
 }
 
 TEST_CASE("a house with a lower wing is one, two houses that stand out from each other are two") {
-  const auto parted = [](double turned, double depth, double from) {
-    HeightMap map;
-    map.cell = 0.4, map.width = map.height = 150;
-    SceneClasses classes;
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x) {
-        const Vec2 p = map.middle(x, y) - Vec2(25, 10);
-        const double u = p.x() * std::cos(turned) + p.y() * std::sin(turned);
-        const double v = p.y() * std::cos(turned) - p.x() * std::sin(turned);
-        const bool is_house = u > 0 && u < 9 && v > 0 && v < 12;
-        const bool is_other = u >= 9 && u < 17 && v > from && v < from + depth;
-        map.top.push_back(is_house ? 6 : is_other ? 5.5f : 0);
-        map.color.push_back({120, 120, 120});
-        classes.building.push_back(is_house || is_other ? 0 : -1);
-      }
-    classes.buildings = 1;
-    classes.ground.assign(map.size(), 0);
-    part_rows(map, classes);
-    return classes.buildings;
+  const auto beside = [](double turned, double depth, double from) {
+    return parted(60, [=](const Vec2& at) {
+      const Vec2 p = at - Vec2(25, 10);
+      const double u = p.x() * std::cos(turned) + p.y() * std::sin(turned);
+      const double v = p.y() * std::cos(turned) - p.x() * std::sin(turned);
+      const bool is_house = u > 0 && u < 9 && v > 0 && v < 12;
+      const bool is_other = u >= 9 && u < 17 && v > from && v < from + depth;
+      return std::pair(is_house ? 6.0f : is_other ? 5.5f : 0.0f, kGrey);
+    });
   };
   for (const double turned : {0.0, 0.35}) {
     CAPTURE(turned);
-    CHECK(parted(turned, 7, 0) == 1);
-    CHECK(parted(turned, 6.5, 3) == 1);
-    CHECK(parted(turned, 12, 0) == 2);
-    CHECK(parted(turned, 12, 1.2) == 2);
+    CHECK(beside(turned, 7, 0) == 1);
+    CHECK(beside(turned, 6.5, 3) == 1);
+    CHECK(beside(turned, 12, 0) == 2);
+    CHECK(beside(turned, 12, 1.2) == 2);
   }
 }
 
@@ -135,48 +147,31 @@ TEST_CASE("an office with a roof house is one building") {
   for (const double depth : {11.0, 14.0})
     for (const double gap : {1.6, 3.0}) {
       CAPTURE(depth, gap);
-      HeightMap map;
-      map.cell = 0.4, map.width = map.height = 100;
-      SceneClasses classes;
-      for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-          const Vec2 p = map.middle(x, y) - Vec2(8, 8);
-          const bool is_in = p.x() > 0 && p.x() < 20 && p.y() > 0 && p.y() < depth;
-          const bool is_top = p.x() > 6 && p.x() < 13 && p.y() > gap && p.y() < depth - gap;
-          map.top.push_back(is_top ? 12 : is_in ? 9.6f : 0);
-          map.color.push_back(is_in ? Rgb{160, 160, 155} : Rgb{120, 120, 120});
-          classes.building.push_back(is_in ? 0 : -1);
-        }
-      classes.buildings = 1;
-      classes.ground.assign(map.size(), 0);
-      part_rows(map, classes);
-      CHECK(classes.buildings == 1);
+      CHECK(parted(40, [=](const Vec2& at) {
+              const Vec2 p = at - Vec2(8, 8);
+              const bool is_in = p.x() > 0 && p.x() < 20 && p.y() > 0 && p.y() < depth;
+              const bool is_top = p.x() > 6 && p.x() < 13 && p.y() > gap && p.y() < depth - gap;
+              return std::pair(is_top  ? 12.0f
+                               : is_in ? 9.6f
+                                       : 0.0f,
+                               is_in ? Rgb{160, 160, 155} : kGrey);
+            }) == 1);
     }
 }
 
 TEST_CASE("an area of another colour is a house in a block of houses, and a sign on a hall") {
-  const auto parted = [](double length, double depth) {
-    HeightMap map;
-    map.cell = 0.4, map.width = map.height = static_cast<int>((length + 4) / map.cell);
-    SceneClasses classes;
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x) {
-        const Vec2 p = map.middle(x, y) - Vec2(2, 2);
-        const bool is_roof = p.x() > 0 && p.y() > 0 && p.x() < length && p.y() < depth;
-        const bool is_white = p.x() > 5 && p.y() > 6 && p.x() < 13 && p.y() < 12;
-        map.top.push_back(is_roof ? 8 : 0);
-        map.color.push_back(is_roof && is_white ? Rgb{230, 230, 230} : Rgb{120, 120, 120});
-        classes.building.push_back(is_roof ? 0 : -1);
-      }
-    classes.buildings = 1;
-    classes.ground.assign(map.size(), 0);
-    part_rows(map, classes);
-    return classes.buildings;
+  const auto block = [](double length, double depth) {
+    return parted(length + 4, [=](const Vec2& at) {
+      const Vec2 p = at - Vec2(2, 2);
+      const bool is_roof = p.x() > 0 && p.y() > 0 && p.x() < length && p.y() < depth;
+      const bool is_white = p.x() > 5 && p.y() > 6 && p.x() < 13 && p.y() < 12;
+      return std::pair(is_roof ? 8.0f : 0.0f, is_roof && is_white ? Rgb{230, 230, 230} : kGrey);
+    });
   };
-  CHECK(parted(20, 16) >= 2);
-  CHECK(parted(30, 20) >= 2);
-  CHECK(parted(80, 40) == 1);
-  CHECK(parted(150, 60) == 1);
+  CHECK(block(20, 16) >= 2);
+  CHECK(block(30, 20) >= 2);
+  CHECK(block(80, 40) == 1);
+  CHECK(block(150, 60) == 1);
 }
 
 TEST_CASE("a place without buildings stays as it is") {
