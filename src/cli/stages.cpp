@@ -71,6 +71,7 @@ void segment_into(Store& store, const Inventory& inventory, const Reader& read,
     Building& problem = problems.buildings[before + position];
     problem.source.name = name;
     problem.failure = b.failure;
+    problem.is_dismissed = b.is_dismissed;
     problem.warnings = b.warnings;
   });
 }
@@ -350,6 +351,7 @@ int export_files(const StageArguments& a) {
   const Options options = stores.front().options();
   Gallery gallery(scene.buildings.size(), options.layers);
   Sources sources(stores, scene, file_of);
+  leave_out_dismissed(scene);
   if (!a.output.options.has_no_page)
     parallel_for(scene.buildings.size(), [&](std::size_t i) {
       Building& b = scene.buildings[i];

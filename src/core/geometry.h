@@ -78,7 +78,8 @@ struct Source {
   std::vector<std::string> warnings;  ///< what the reader mended or doubts, one line each
   std::vector<LeftOut> left_out;      ///< what is no longer in it
   double read_seconds = 0;            ///< wall clock that reading its file took
-  bool is_turned_back = false;        ///< a glTF that was read z up, whatever its format says
+  bool is_found = false;  ///< cut out of a place by a plan that the program found, not one given
+  bool is_turned_back = false;  ///< a glTF that was read z up, whatever its format says
 
   bool is_mesh() const { return !mesh.faces.empty(); }
 };

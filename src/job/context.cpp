@@ -22,9 +22,20 @@ constexpr double kServing = 0.5;  // of the finest tiles: so many with coarser o
 constexpr double kFinest = 2048;  // pixels along a square of ground, at most
 constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decoded images
 
-using Parted = std::shared_ptr<const PartedScene>;
 using Pieces = std::vector<Territories::Piece>;
-using Ground = std::shared_ptr<const ClosingGround>;
+
+/// A scene, and what of its plan buildings stand for.
+struct Around {
+  std::shared_ptr<const PartedScene> scene;
+  Territories built;
+  ClosingGround ground;
+
+  Around(const std::shared_ptr<const PartedScene>& whole, const std::vector<char>& is_unbuilt)
+      : scene(whole),
+        built(whole->territories.without(is_unbuilt)),
+        ground(whole->map, whole->classes) {}
+};
+using Place = std::shared_ptr<const Around>;
 
 std::string cause_of(const Error& e) { return std::string(e.what()).substr(e.item.size() + 2); }
 
@@ -60,30 +71,28 @@ bool has_own_chain(const SceneTiles& tiles) {
 }
 
 /// What of a tile is no building's, closed where it was cut.
-Source beside_buildings(const PartedScene& scene, const ClosingGround& ground, const Source& tile) {
-  Source out = scene.territories.cut_out(tile, -1);
-  add_skirts(scene.territories, ground, out);
+Source beside_buildings(const Around& place, const Source& tile) {
+  Source out = place.built.cut_out(tile, -1);
+  add_skirts(place.built, place.ground, out);
   return out;
 }
 
 /// The ground below buildings.
-Source below_buildings(const PartedScene& scene, const ClosingGround& ground,
-                       const Pieces& pieces) {
-  Source out = ground.below(pieces);
-  add_skirts(scene.territories, ground, out);
+Source below_buildings(const Around& place, const Pieces& pieces) {
+  Source out = place.ground.below(pieces);
+  add_skirts(place.built, place.ground, out);
   return out;
 }
 
 /// What a node shows beside the buildings; what of it cannot be read is among its warnings.
-Source read_node(const PartedScene& scene, const ClosingGround& ground, std::size_t i,
-                 const ReadOptions& options) {
-  const TileNode& node = scene.tiles.tree().nodes[i];
+Source read_node(const Around& place, std::size_t i, const ReadOptions& options) {
+  const SceneTiles& tiles = place.scene->tiles;
+  const TileNode& node = tiles.tree().nodes[i];
   std::vector<std::string> problems;
   std::vector<Source> parts;
   for (const std::string& content : node.contents) {
     try {
-      parts.push_back(beside_buildings(scene, ground,
-                                       read_tile(node, content, scene.tiles.to_scene(), options)));
+      parts.push_back(beside_buildings(place, read_tile(node, content, tiles.to_scene(), options)));
     } catch (const Error& e) {
       problems.push_back(content + ": " + cause_of(e));
     } catch (const std::exception& e) {  // a library gave up: this tile's problem only
@@ -101,9 +110,9 @@ class Nodes {
   explicit Nodes(const SceneOutput& output) : output_(output) {}
 
   /// The scene's own tiles on all their levels.
-  void add_tree(const Parted& scene, const Ground& ground, const ReadOptions& options) {
-    const std::vector<TileNode>& tree = scene->tiles.tree().nodes;
-    const std::vector<char> is_left_out = too_fine(scene->tiles);
+  void add_tree(const Place& place, const ReadOptions& options) {
+    const std::vector<TileNode>& tree = place->scene->tiles.tree().nodes;
+    const std::vector<char> is_left_out = too_fine(place->scene->tiles);
     std::vector<int> number;
     for (std::size_t i = 0; i < tree.size(); ++i) {
       number.push_back(static_cast<int>(nodes_.size()));
@@ -111,8 +120,7 @@ class Nodes {
       const int above = tree[i].parent;
       nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
                         tree[i].geometric_error, tree[i].is_added});
-      read_.push_back(
-          [scene, ground, options, i] { return read_node(*scene, *ground, i, options); });
+      read_.push_back([place, options, i] { return read_node(*place, i, options); });
     }
   }
 
@@ -136,7 +144,7 @@ class Nodes {
     }
   }
 
-  std::shared_ptr<const Context> take(const Parted& scene) {
+  std::shared_ptr<const Context> take(const std::shared_ptr<const PartedScene>& scene) {
     auto context = std::make_shared<Context>();
     context->nodes = std::move(nodes_);
     context->read = [read = std::move(read_)](std::size_t i) { return read[i](); };
@@ -162,18 +170,16 @@ Vec2 middle_of(const Territories::Piece& piece) {
 }
 
 /// The ground below buildings, square by square.
-void add_closing(const Parted& scene, const Ground& ground, Nodes& nodes) {
+void add_closing(const Place& place, Nodes& nodes) {
   std::map<std::array<int, 2>, Pieces> squares;
-  for (const Territories::Piece& piece : scene->territories.pieces()) {
+  for (const Territories::Piece& piece : place->built.pieces()) {
     const Vec2 at = middle_of(piece) / kCell;
     squares[{static_cast<int>(std::floor(at.y())), static_cast<int>(std::floor(at.x()))}].push_back(
         piece);
   }
   auto all = std::make_shared<std::vector<Pieces>>();
   for (auto& [at, pieces] : squares) all->push_back(std::move(pieces));
-  const auto close = [scene, ground, all](std::size_t i) {
-    return below_buildings(*scene, *ground, (*all)[i]);
-  };
+  const auto close = [place, all](std::size_t i) { return below_buildings(*place, (*all)[i]); };
   std::vector<ChainLeaf> leaves;
   for (std::size_t i = 0; i < all->size(); ++i)
     leaves.push_back({box_of((*all)[i]), [close, i] { return ChainPart{close(i), {}, {}}; }, 0});
@@ -194,30 +200,30 @@ std::size_t tile_below(const SceneTiles& tiles, const Vec2& p) {
 }
 
 /// The finest tiles, each with the ground that closes it, and coarser ones of the program's own.
-void add_own_chain(const Parted& scene, const Ground& ground, Nodes& nodes) {
-  const auto pieces = std::make_shared<std::vector<Pieces>>(scene->tiles.count());
-  for (const Territories::Piece& piece : scene->territories.pieces())
-    (*pieces)[tile_below(scene->tiles, middle_of(piece))].push_back(piece);
-  const auto show = [scene, ground, pieces](std::size_t i, const Source& tile) {
-    return joined(
-        {beside_buildings(*scene, *ground, tile), below_buildings(*scene, *ground, (*pieces)[i])});
+void add_own_chain(const Place& place, Nodes& nodes) {
+  const SceneTiles& tiles = place->scene->tiles;
+  const auto pieces = std::make_shared<std::vector<Pieces>>(tiles.count());
+  for (const Territories::Piece& piece : place->built.pieces())
+    (*pieces)[tile_below(tiles, middle_of(piece))].push_back(piece);
+  const auto show = [place, pieces](std::size_t i, const Source& tile) {
+    return joined({beside_buildings(*place, tile), below_buildings(*place, (*pieces)[i])});
   };
   std::vector<ChainLeaf> leaves;
   for (std::size_t i = 0; i < pieces->size(); ++i) {
-    const auto read = [scene, show, i] {
-      const std::shared_ptr<const Source> tile = scene->tiles.get(i);
+    const auto read = [place, show, i] {
+      const std::shared_ptr<const Source> tile = place->scene->tiles.get(i);
       ChainPart part{show(i, *tile), {}, {}};
       part.is_joint = marked_as(part.source.mesh, tile->mesh, on_border(tile->mesh));
       return part;
     };
-    leaves.push_back({scene->tiles.box(i), read, 0});
+    leaves.push_back({tiles.box(i), read, 0});
   }
   const auto images = std::make_shared<const OwnImages>(kChainImages);
-  nodes.add_chain(leaves, [scene, show, images](std::size_t i) {
+  nodes.add_chain(leaves, [place, show, images](std::size_t i) {
     Source lost;
     try {
-      Source shown = show(i, *scene->tiles.get(i));
-      if (scene->tiles.is_piece(i)) images->give(shown);
+      Source shown = show(i, *place->scene->tiles.get(i));
+      if (place->scene->tiles.is_piece(i)) images->give(shown);
       return shown;
     } catch (const Error& e) {
       lost.warnings.push_back(e.what());
@@ -232,21 +238,21 @@ struct Square {
 };
 
 /// Terrain alone, and what it looks like where it was seen.
-ChainPart bare_part(const PartedScene& scene, const ClosingGround& ground, const Square& s,
-                    const Box& box) {
-  ChainPart part{ground.terrain(s.x0, s.y0, s.x1, s.y1), {}, {}};
+ChainPart bare_part(const Around& place, const Square& s, const Box& box) {
+  const PartedScene& scene = *place.scene;
+  ChainPart part{place.ground.terrain(s.x0, s.y0, s.x1, s.y1), {}, {}};
   const Vec2 low = scene.map.middle(s.x0, s.y0), high = scene.map.middle(s.x1, s.y1);
   for (const Vec3& p : part.source.mesh.vertices)
     part.is_joint.push_back(p.x() == low.x() || p.y() == low.y() || p.x() == high.x() ||
                             p.y() == high.y());
   for (const std::size_t t : scene.tiles.over(box))
-    part.painted.push_back(ground.bare(*scene.tiles.get(t)));
+    part.painted.push_back(place.ground.bare(*scene.tiles.get(t)));
   return part;
 }
 
 /// No plants, no clutter: the terrain, closed below all that stands on it.
-void add_bare_ground(const Parted& scene, const Ground& ground, Nodes& nodes) {
-  const HeightMap& map = scene->map;
+void add_bare_ground(const Place& place, Nodes& nodes) {
+  const HeightMap& map = place->scene->map;
   const int cells = std::max(2, static_cast<int>(kCell / map.cell));
   std::vector<ChainLeaf> leaves;
   for (int y = 0; y + 1 < map.height; y += cells)
@@ -255,7 +261,7 @@ void add_bare_ground(const Parted& scene, const Ground& ground, Nodes& nodes) {
       Box box;
       for (const Vec2& p : {map.middle(s.x0, s.y0), map.middle(s.x1, s.y1)})
         box.extend(Vec3(p.x(), p.y(), 0));
-      leaves.push_back({box, [scene, ground, s, box] { return bare_part(*scene, *ground, s, box); },
+      leaves.push_back({box, [place, s, box] { return bare_part(*place, s, box); },
                         box.size().maxCoeff() / kFinest});
     }
   nodes.add_chain(leaves, {});
@@ -263,17 +269,18 @@ void add_bare_ground(const Parted& scene, const Ground& ground, Nodes& nodes) {
 
 }  // namespace
 
-std::shared_ptr<const Context> context_of(const Parted& scene, ContextMode mode,
+std::shared_ptr<const Context> context_of(const std::shared_ptr<const PartedScene>& scene,
+                                          const std::vector<char>& is_unbuilt, ContextMode mode,
                                           const ReadOptions& options, const SceneOutput& output) {
   Nodes nodes(output);
-  const auto ground = std::make_shared<const ClosingGround>(scene->map, scene->classes);
+  const Place place = std::make_shared<const Around>(scene, is_unbuilt);
   if (mode == ContextMode::kGround) {
-    add_bare_ground(scene, ground, nodes);
+    add_bare_ground(place, nodes);
   } else if (has_own_chain(scene->tiles)) {
-    nodes.add_tree(scene, ground, options);
-    add_closing(scene, ground, nodes);
+    nodes.add_tree(place, options);
+    add_closing(place, nodes);
   } else {
-    add_own_chain(scene, ground, nodes);
+    add_own_chain(place, nodes);
   }
   return nodes.take(scene);
 }

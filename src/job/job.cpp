@@ -71,10 +71,7 @@ Product run_job(const std::vector<std::string>& inputs, const Job& job, const Jo
                          [&](const Hooks& inner, const Prior* prior) {
                            Scene scene =
                                build_scene(found.inventory, found.read, job.options, inner, prior);
-                           scene.attributes = found.attributes;
-                           scene.context = found.context;
-                           scene.classes = found.classes;
-                           scene.found_footprints = found.found_footprints;
+                           add_place(found, scene);
                            return scene;
                          });
   if (found.scene) product.archive = found.scene->tiles.tree().archive;

@@ -153,7 +153,8 @@ double covered(const Mesh& mesh) {
 }
 
 /// The surface over one footprint, as a building of its own.
-Source building_of(const PartedScene& scene, std::size_t b, const std::string& name) {
+Source building_of(const PartedScene& scene, std::size_t b) {
+  const std::string& name = scene.names[b];
   Source source;
   {
     Stopwatch watch(source.read_seconds);
@@ -168,6 +169,7 @@ Source building_of(const PartedScene& scene, std::size_t b, const std::string& n
   source.name = name;
   source.given_name = footprint.id;
   source.path = scene.tiles.tree().path;
+  source.is_found = scene.is_found;
   if (covered(source.mesh) < kLeastCovered * scene.territories.area(b))
     throw Error(Stage::kInput, name,
                 "no surface of the scene lies over its footprint: a gap, or the footprint is "
@@ -209,15 +211,14 @@ std::vector<std::string> names_of(const std::vector<Footprint>& footprints) {
 
 /// One building a footprint: a failure of its own where the scene has nothing there.
 void list_buildings(const std::shared_ptr<const PartedScene>& scene, Inputs& inputs) {
-  const std::vector<std::string> names = names_of(scene->footprints);
   const std::vector<std::size_t> order = in_rows(scene->territories);
   for (const std::size_t b : order) {
-    inputs.inventory.files.push_back({scene->tiles.tree().path, {names[b]}});
-    inputs.attributes[names[b]] = scene->footprints[b].attributes;
+    inputs.inventory.files.push_back({scene->tiles.tree().path, {scene->names[b]}});
+    inputs.attributes[scene->names[b]] = scene->footprints[b].attributes;
   }
-  inputs.read = [scene, names, order](std::size_t file) {
+  inputs.read = [scene, order](std::size_t file) {
     std::vector<Source> one;
-    one.push_back(building_of(*scene, order[file], names[order[file]]));
+    one.push_back(building_of(*scene, order[file]));
     return one;
   };
   inputs.scene = scene;
@@ -235,7 +236,6 @@ std::vector<Footprint> footprints_of(const SceneTiles& tiles, const SceneChoice&
     throw Error(Stage::kInput, tiles.tree().path,
                 "no building was found on it: --footprints names a file with their plans, --scene "
                 "buildings takes each file for one building");
-  out.found_footprints = footprints_geojson(found, place);
   return found;
 }
 
@@ -416,16 +416,40 @@ Inputs open_scene(const std::string& input, const std::string& why, const ReadOp
       std::to_string(footprints.size()) +
           (choice.footprints.empty() ? " buildings were found on it" : " footprints lie on it"));
   Territories territories(footprints);
-  const auto scene = std::make_shared<const PartedScene>(
-      PartedScene{std::move(tiles), place, std::move(footprints), std::move(territories),
-                  std::move(map), std::move(classes)});
+  std::vector<std::string> names = names_of(footprints);
+  const auto scene = std::make_shared<const PartedScene>(PartedScene{
+      std::move(tiles), place, std::move(footprints), std::move(names), choice.footprints.empty(),
+      std::move(territories), std::move(map), std::move(classes)});
   list_buildings(scene, out);
   if (choice.context != ContextMode::kNone)
-    out.context = context_of(scene, choice.context, read, options);
+    out.context = [scene, read, options, mode = choice.context](const std::vector<char>& unbuilt) {
+      return context_of(scene, unbuilt, mode, read, options);
+    };
   return out;
 }
 
 }  // namespace
+
+void add_place(const Inputs& inputs, Scene& built) {
+  if (!inputs.scene) return;
+  const PartedScene& place = *inputs.scene;
+  leave_out_dismissed(built);
+  std::map<std::string, bool> has_mesh;
+  for (const Building& b : built.buildings)
+    has_mesh[b.source.name] = std::any_of(b.layers.begin(), b.layers.end(),
+                                          [](const Layer& l) { return l.failure.empty(); });
+  std::vector<char> is_unbuilt;
+  std::vector<Footprint> footprints;
+  for (std::size_t i = 0; i < place.names.size(); ++i) {
+    const auto known = has_mesh.find(place.names[i]);
+    is_unbuilt.push_back(known == has_mesh.end() || !known->second);
+    if (known != has_mesh.end()) footprints.push_back(place.footprints[i]);
+  }
+  built.attributes = inputs.attributes;
+  built.classes = inputs.classes;
+  if (inputs.context) built.context = inputs.context(is_unbuilt);
+  if (place.is_found) built.found_footprints = footprints_geojson(footprints, place.place);
+}
 
 Inputs open_inputs(const std::vector<std::string>& inputs, const ReadOptions& read,
                    const SceneChoice& choice, const SceneOutput& output, const Tell& tell) {

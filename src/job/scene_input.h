@@ -1,6 +1,7 @@
 // Inputs → what the pipeline reads: files with buildings, or one scene that is taken apart.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ struct PartedScene {
   SceneTiles tiles;
   std::optional<Georeference> place;  ///< none: nowhere on Earth
   std::vector<Footprint> footprints;
+  std::vector<std::string> names;  ///< of the footprints' buildings
+  bool is_found = false;           ///< the footprints are by the program, not of a file
   Territories territories;
   HeightMap map;         ///< empty where it is not needed
   SceneClasses classes;  ///< of the map
@@ -33,9 +36,10 @@ struct Inputs {
   Reader read;
   std::shared_ptr<const PartedScene> scene;      ///< null: files with buildings
   std::map<std::string, Attributes> attributes;  ///< by building's name
-  std::shared_ptr<const Context> context;        ///< null: none is written
   std::vector<ClassArea> classes;                ///< of a scene whose map was drawn
-  std::string found_footprints;                  ///< as GeoJSON; empty: they were given
+  /// What is no building of a scene, once it is known for which of its footprints there is a mesh;
+  /// null: none is written.
+  std::function<std::shared_ptr<const Context>(const std::vector<char>& is_unbuilt)> context;
 };
 
 /// What of the output's options a scene is opened with.
@@ -43,6 +47,11 @@ struct SceneOutput {
   std::string crs, origin;
   double target_sse = 16, pixel_error = 2;  ///< pixels
 };
+
+/// What a scene has beside its buildings: those without a mesh stay in the context as the source
+/// shows them, and what was dismissed goes from the buildings and the footprints. Nothing for files
+/// with buildings.
+void add_place(const Inputs& inputs, Scene& built);
 
 /// Tells what an INPUT is taken for, and why. Throws Error{kInput} for inputs that are not there or
 /// a scene without a tile, Error{kUsage} for options that do not go together.

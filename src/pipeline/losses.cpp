@@ -10,6 +10,7 @@
 
 #include "core/flat.h"
 #include "measure/lost_bodies.h"
+#include "measure/parameters.h"
 #include "measure/scene_part.h"
 #include "relief/relief.h"
 #include "scene/left_out.h"
@@ -122,12 +123,25 @@ void weigh_finest(const Surface& source, Building& b) {
   }
 }
 
+std::string judge_found(const Building& b) {
+  if (!b.source.is_found) return "";
+  double share = 0;
+  for (const LeftOut& l : b.left_out)
+    if (l.reason == LeftOut::Reason::kGround) share += l.share;
+  if (share <= parameters::scene_part::kMostGround) return "";
+  return b.source.name + ": was found, and is no building: " + percent(share) +
+         " of what lies over its plan is ground and what stands about on it; it is left as the "
+         "source shows it, --footprints with its plan builds it all the same";
+}
+
 std::string judge_building(const Surface& source, const Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return "";
   const std::string why = judge_scene(survey_layer(source, b.layers.back().mesh, b.solid));
   if (why.empty()) return "";
   return b.source.name + ": this looks like a part of a scene: " + why +
-         "; nothing is written for it, --rules paper meshes it all the same";
+         (b.source.is_found ? "; it is left as the source shows it"
+                            : "; nothing is written for it") +
+         ", --rules paper meshes it all the same";
 }
 
 std::vector<std::string> loss_warnings(const Building& b) {

@@ -17,6 +17,10 @@ void weigh_finest(const Surface& source, Building& building);
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
+/// Why what was found on a place is no building, before its segments are: most of what lies over
+/// its plan is ground. Empty: it may be one, or its plan was given.
+std::string judge_found(const Building& building);
+
 /// Why the finest layer is no building's (measure/scene_part.h); empty: it is one.
 std::string judge_building(const Surface& source, const Building& building);
 

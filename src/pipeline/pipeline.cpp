@@ -60,7 +60,6 @@ void find_planes(Building& b, const Options& o) {
 }
 
 void find_segments(Building& b, const Options& o) {
-  find_planes(b, o);
   b.segments =
       build_segments(b.planes, {.rules = o.rules,
                                 .alcove_area = o.alcove_area,
@@ -248,6 +247,12 @@ bool Building::has_failed() const {
                                          [](const Layer& l) { return !l.failure.empty(); });
 }
 
+void leave_out_dismissed(Scene& scene) {
+  for (const Building& b : scene.buildings)
+    if (b.is_dismissed) scene.warnings.push_back(b.failure);
+  std::erase_if(scene.buildings, [](const Building& b) { return b.is_dismissed; });
+}
+
 Counts count(const Building& b) {
   const std::vector<Vec3>& points =
       b.source.is_mesh() ? b.source.mesh.vertices : b.source.cloud.points;
@@ -276,10 +281,13 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
-    find_segments(b, options);
+    find_planes(b, options);
     b.left_out = b.source.left_out;
     note_look(b);
     tell_parted(b);
+    if (options.rules.has(Rule::kScenePart)) b.failure = judge_found(b);
+    b.is_dismissed = !b.failure.empty();
+    if (!b.is_dismissed) find_segments(b, options);
   } catch (const Error& e) {
     b.failure = e.what();
   } catch (const std::exception& e) {  // a library gave up: this building's problem only
@@ -358,6 +366,7 @@ void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
     weigh_finest(surface, b);
     if (options.rules.has(Rule::kScenePart)) b.failure = judge_building(surface, b);
     if (!b.failure.empty()) {
+      b.is_dismissed = b.source.is_found;
       b.layers.clear();
       forget_losses(b);
       return;

@@ -95,7 +95,8 @@ struct Building {
   double solid = -1;  ///< m³ that the source encloses (measure/solid.h); −1: not measured
   std::vector<std::string> lost_looks;  ///< textures that are wanted and not there, one line each
   std::vector<std::string> warnings;
-  std::string failure;  ///< why the building has no layer at all; empty: it has
+  std::string failure;        ///< why the building has no layer at all; empty: it has
+  bool is_dismissed = false;  ///< found on a place, and none after all: `failure` says why
 
   bool has_failed() const;
   /// Whether too much of the finest layer has nothing of the source behind it (kMostRagged).
@@ -164,6 +165,9 @@ struct Scene {
   std::set<std::string> placed_later;  ///< buildings that were placed by what the others learnt,
                                        ///< since those were analysed together
 };
+
+/// Takes what was dismissed out of the scene, a warning each.
+void leave_out_dismissed(Scene& scene);
 
 Counts count(const Building& building);
 

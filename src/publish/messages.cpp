@@ -11,7 +11,8 @@ namespace colod {
 
 std::vector<Message> problems_of(const Building& b) {
   std::vector<Message> to;
-  if (!b.failure.empty()) to.push_back({Level::kError, b.failure});
+  if (!b.failure.empty())
+    to.push_back({b.is_dismissed ? Level::kWarning : Level::kError, b.failure});
   for (const Layer& layer : b.layers) {
     const std::string place = b.source.name + ", layer " + std::to_string(layer.layer) + ": ";
     if (!layer.failure.empty())

@@ -20,6 +20,7 @@ Tally& Tally::operator+=(const Tally& other) {
 
 Tally tally_of(const Building& b) {
   Tally t;
+  if (b.is_dismissed) return t;
   t.buildings = 1;
   t.amiss = b.has_failed() || b.has_lost();
   t.failed = !b.failure.empty();

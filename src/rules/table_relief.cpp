@@ -21,7 +21,6 @@ std::vector<Parameter> melted_numbers() {
       {"wide", "m", relief::kWide,
        "median edge: nothing but roofs and walls can be told, however flat they are"},
       {"wide_bulge", "m", relief::kWideBulge, "of such meshes"},
-      {"coarse", "m", relief::kCoarse, "median edge, or four bulges: windows cannot be told"},
       {"least_drawn", "", kLeastDrawn,
        "share of the surface that is upright or level to the last digit: what people draw"},
       {"least_support", "", relief::kLeastSupport,

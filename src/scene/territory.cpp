@@ -313,8 +313,18 @@ Territories::Territories(const std::vector<Footprint>& footprints)
   }
 }
 
+Territories::Territories(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Territories::~Territories() = default;
 Territories::Territories(Territories&&) noexcept = default;
+
+Territories Territories::without(const std::vector<char>& is_out) const {
+  auto impl = std::make_unique<Impl>();
+  impl->boxes.resize(count());
+  impl->areas.resize(count(), 0);
+  for (const Piece& piece : impl_->pieces)
+    if (!is_out[static_cast<std::size_t>(piece.building)]) impl->add(piece);
+  return Territories(std::move(impl));
+}
 
 std::size_t Territories::count() const { return impl_->boxes.size(); }
 const Box& Territories::box(std::size_t building) const { return impl_->boxes[building]; }

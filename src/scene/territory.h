@@ -17,6 +17,8 @@ class Territories {
   explicit Territories(const std::vector<Footprint>& footprints);
   ~Territories();
   Territories(Territories&&) noexcept;
+  /// The same without some buildings' pieces: what was theirs is over none.
+  Territories without(const std::vector<char>& is_out) const;
 
   std::size_t count() const;
   /// Of a building's territory; heights are infinite.
@@ -42,6 +44,7 @@ class Territories {
 
  private:
   struct Impl;
+  explicit Territories(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -195,7 +195,7 @@ LayerSight read_sight(Statement& s) {
 void Store::Impl::put_building(const Building& b, int order, const std::string& key) const {
   const std::vector<Vec3> box{b.planes.box.min, b.planes.box.max};
   std::vector<std::string> own_warnings = b.warnings;
-  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+  write("INSERT INTO building VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
       .bind(b.source.name)
       .bind(order)
       .bind(key)
@@ -223,6 +223,8 @@ void Store::Impl::put_building(const Building& b, int order, const std::string& 
       .bind(b.source.look.uvs)
       .bind_bytes(b.source.look.colors.data(),
                   b.source.look.colors.size() * sizeof b.source.look.colors[0])
+      .bind(b.source.is_found)
+      .bind(b.is_dismissed)
       .run();
 }
 
@@ -306,11 +308,13 @@ void Store::Impl::put_layer(const Building& b, const Layer& layer) const {
 
 void Store::Impl::put_outcome(const Building& b) const {
   write(
-      "UPDATE building SET failure = ?1, warnings = ?2, left_out = ?3, solid = ?4 WHERE name = ?5")
+      "UPDATE building SET failure = ?1, warnings = ?2, left_out = ?3, solid = ?4, is_dismissed = "
+      "?5 WHERE name = ?6")
       .bind(b.failure)
       .bind(Json(b.warnings).dump(-1, ' ', false, Json::error_handler_t::replace))
       .bind(Json(b.left_out).dump())
       .bind(b.solid)
+      .bind(b.is_dismissed)
       .bind(b.source.name)
       .run();
 }
@@ -340,6 +344,7 @@ void Store::Impl::get_building(Building& b) const {
   b.source.look.face_material = s.array<int>();
   b.source.look.uvs = s.array<std::array<Vec2f, 3>>();
   b.source.look.colors = s.array<std::array<Rgb, 3>>();
+  b.source.is_found = s.integer() != 0;
   check_look(b.source, path);
   note_look(b);
   check_place(b.source.mesh.vertices, path);
@@ -359,6 +364,7 @@ void Store::Impl::get_outcome(Building& b) const {
   read_json(s.text(), path, "warnings", [&](const Json& json) { json.get_to(b.warnings); });
   read_json(s.text(), path, "left out parts", [&](const Json& json) { json.get_to(b.left_out); });
   b.solid = s.real();
+  b.is_dismissed = s.integer() != 0;
 }
 
 void Store::Impl::get_planes(Building& b) const {

@@ -20,10 +20,10 @@ struct SectionFacts {
 constexpr std::array<SectionFacts, 8> kSections = {
     {{"SELECT name, position, key, path, origin_x, origin_y, origin_z, yaw, planes_distance, "
       "total_area, box, vertices, faces, points, normals, plane_of_item, rays, given_name, look, "
-      "face_material, uvs, colors FROM building WHERE name = ?1",
+      "face_material, uvs, colors, is_found FROM building WHERE name = ?1",
       "numbers", "segment"},
-     {"SELECT failure, warnings, left_out, solid FROM building WHERE name = ?1", "messages",
-      "segment"},
+     {"SELECT failure, warnings, left_out, solid, is_dismissed FROM building WHERE name = ?1",
+      "messages", "segment"},
      {"SELECT id, segment, normal_x, normal_y, normal_z, plane_offset, area, centroid, items, "
       "outline_vertices, outline_rings, outline_triangles FROM plane WHERE building = ?1 ORDER BY "
       "id",

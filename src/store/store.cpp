@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 10;  // PRAGMA user_version
+constexpr int kFormat = 11;  // PRAGMA user_version
 
 constexpr const char* kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL, seal TEXT NOT NULL);
@@ -30,7 +30,8 @@ CREATE TABLE building(name TEXT PRIMARY KEY, position INTEGER NOT NULL, key TEXT
   origin_x REAL, origin_y REAL, origin_z REAL, yaw REAL, planes_distance REAL, total_area REAL,
   box BLOB, vertices BLOB, faces BLOB, points BLOB, normals BLOB, plane_of_item BLOB,
   rays INTEGER, failure TEXT NOT NULL, warnings TEXT NOT NULL, left_out TEXT NOT NULL,
-  given_name TEXT NOT NULL, solid REAL, look TEXT NOT NULL, face_material BLOB, uvs BLOB, colors BLOB);
+  given_name TEXT NOT NULL, solid REAL, look TEXT NOT NULL, face_material BLOB, uvs BLOB, colors BLOB,
+  is_found INTEGER NOT NULL, is_dismissed INTEGER NOT NULL);
 CREATE TABLE plane(building TEXT NOT NULL REFERENCES building(name) ON DELETE CASCADE, id INTEGER NOT NULL,
   segment INTEGER, normal_x REAL, normal_y REAL, normal_z REAL, plane_offset REAL, area REAL,
   centroid BLOB, items BLOB, outline_vertices BLOB, outline_rings BLOB, outline_triangles BLOB,
@@ -420,6 +421,7 @@ std::string segments_key(const Source& source, const Options& options) {
   hash.add(source.mesh.faces);
   hash.add(source.cloud.points);
   hash.add(source.cloud.normals);
+  hash.add(std::vector<int>{source.is_found});
   hash.add(source.look.face_material);
   hash.add(source.look.uvs);
   hash.add(source.look.colors);

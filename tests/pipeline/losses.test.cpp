@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "meshes.h"
+#include "publish/messages.h"
 #include "publish/report.h"
 #include "scene/left_out.h"
+#include "scenes.h"
 
 using namespace colod;
 using namespace colod::test;
@@ -68,14 +70,16 @@ Mesh hipped_roof(double w, double d, double h) {
   return m;
 }
 
-Scene build(Mesh mesh) {
+Scene build(Source source) {
   ReadResult input;
-  input.sources.push_back(as_source(std::move(mesh), "one"));
+  input.sources.push_back(std::move(source));
   Options options;
   options.ns = 24;
   options.nr = 40;
   return build_scene(std::move(input), options);
 }
+
+Scene build(Mesh mesh) { return build(as_source(std::move(mesh), "one")); }
 
 std::string failure_of(const Mesh& mesh) { return build(mesh).buildings[0].failure; }
 
@@ -95,6 +99,40 @@ TEST_CASE("terrain, walls and corners look like parts of a scene") {
     CHECK(!wall.has_lost());
     CHECK_THAT(failure_of(walls(w, w / 2, 0.7 * w)), Catch::Contains("part of a scene"));
   }
+}
+
+TEST_CASE("what was found where most is ground is no building; of a plan that was given it is") {
+  for (const double w : {3.0, 6.0, 15.0})
+    for (const bool is_wide : {true, false}) {
+      const double plot = is_wide ? 3 * w : w + 3, h = is_wide ? w / 3 : std::max(2.5, w / 3);
+      CAPTURE(w, plot);
+      const Vec3 low(0.5 * (plot - w), 0.5 * (plot - w), 0);
+      Source source = as_source(terrain_with_boxes(plot, w / 6, {{low, low + Vec3(w, w, h)}}));
+      const Building given = build(source).buildings[0];
+      CHECK(given.failure == "");
+      source.is_found = true;
+      const Building found = build(source).buildings[0];
+      CHECK(found.is_dismissed == is_wide);
+      CHECK(found.layers.empty() == is_wide);
+      CHECK(found.descriptors.empty() == is_wide);
+      if (is_wide) CHECK_THAT(found.failure, Catch::Contains("is no building"));
+    }
+}
+
+TEST_CASE("a wall that was found is no failure, and nothing of it is written") {
+  Source source = as_source(walls(20, 7, 0));
+  source.is_found = true;
+  const Scene scene = build(source);
+  CHECK(scene.buildings[0].is_dismissed);
+  CHECK(exit_code(scene, {}) == 3);  // it was all that there is
+  Scene street = build(source);
+  street.buildings.push_back(build(as_source(gable_house(12, 9, 6, 4))).buildings[0]);
+  CHECK(exit_code(street) == 0);
+  CHECK(tally_of(street).buildings == 1);
+  CHECK(problems_of(street.buildings[0])[0].level == Level::kWarning);
+  leave_out_dismissed(street);
+  CHECK(street.buildings.size() == 1);
+  CHECK(street.warnings.size() == 1);
 }
 
 TEST_CASE("roofs alone, walls all round and whole buildings do not") {
