@@ -17,11 +17,12 @@ void weigh_finest(const Surface& source, Building& building);
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
-/// Why what was found on a place is no building, before its segments are: most of what lies over
-/// its plan is ground. Empty: it may be one, or its plan was given.
+/// Why what was found on a place is no building: most of what lies over its plan is left out, as
+/// far as that is known yet. Empty: it may be one, or its plan was given.
 std::string judge_found(const Building& building);
 
-/// Why the finest layer is no building's (measure/scene_part.h); empty: it is one.
+/// That, of all that is left out, or why the finest layer is no building's (measure/scene_part.h);
+/// empty: it is one.
 std::string judge_building(const Surface& source, const Building& building);
 
 /// Warnings of a ragged finest layer, and of what was lost or left out over a stated share

@@ -110,11 +110,11 @@ std::array<int, 4> Field::beside(int i) const {
           r + 1 < rows ? i + columns : -1};
 }
 
-Field make_field(const Mesh& mesh, const RayScene& rays, double median_edge, double raster) {
+Field make_field(const Mesh& mesh, const RayScene& rays, double edge, double raster) {
   const Box box = bounding_box(mesh.vertices);
   const Vec3 size = box.size();
   Field f;
-  f.cell = std::max(std::clamp(kCellShare * median_edge, kLeastCell, kMostCell),
+  f.cell = std::max(std::clamp(kCellShare * edge, kLeastCell, kMostCell),
                     std::max(size.x(), size.y()) / kMostCells);
   f.columns = static_cast<int>(size.x() / f.cell) + 1;
   f.rows = static_cast<int>(size.y() / f.cell) + 1;

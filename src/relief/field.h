@@ -28,7 +28,7 @@ struct Field {
 
 /// `raster`: metres, the side of its cells; 0: the mesh is none. A wall of a raster is one cell
 /// wide, so that what is steep over more of them is a steep roof.
-Field make_field(const Mesh& mesh, const RayScene& rays, double median_edge, double raster);
+Field make_field(const Mesh& mesh, const RayScene& rays, double edge, double raster);
 
 /// Metres: residual in height of a piece of roof as wide as a room.
 double roof_noise(const Field& field);

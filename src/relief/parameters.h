@@ -6,7 +6,8 @@
 
 namespace colod::parameters::relief {
 
-constexpr double kCellShare = 0.35;                  // of the median edge: a cell
+constexpr double kEdgeShare = 0.35;  // of the surface: its shorter edges end at the typical one
+constexpr double kCellShare = 0.35;  // of the typical edge: a cell
 constexpr double kLeastCell = 0.1, kMostCell = 0.5;  // metres
 constexpr double kMostCells = 400;                   // along the longer side
 constexpr double kSteep = 1.7;                       // metres a metre (60°): a wall
@@ -19,7 +20,7 @@ constexpr int kSamples = 500;
 
 // Whether a mesh is melted.
 constexpr double kSteepFace = 0.6;                    // |z| of a normal: steeper is a wall's
-constexpr double kWindow = 1.5, kWindowEdges = 1.5;   // metres, or median edges around a face
+constexpr double kWindow = 1.5, kWindowEdges = 1.5;   // metres, or typical edges around a face
 constexpr int kLeastSides = 8;                        // faces there
 constexpr std::size_t kMostSides = 400;               // of a cube of that size, that are looked at
 constexpr double kAlike = 0.5;                        // cosine between their normals
@@ -43,8 +44,8 @@ constexpr double kMostOther = 1e-3;  // … and is no height: of the area, slive
 // Scales.
 constexpr double kLeastSpan = 1;                         // metres that bumps are wide, at least
 constexpr double kLeastNoise = 0.03, kMostNoise = 0.35;  // metres
-constexpr double kToleranceEdge = 0.4;   // of the median edge: what a border may leave its line …
-constexpr double kToleranceNoise = 2.5;  // … or times the noise …
+constexpr double kToleranceEdge = 0.4;  // of the typical edge: what a border may leave its line …
+constexpr double kToleranceNoise = 2.5;                         // … or times the noise …
 constexpr double kLeastTolerance = 0.45, kMostTolerance = 0.8;  // … between these metres
 
 // The ground around.

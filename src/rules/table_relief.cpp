@@ -19,7 +19,7 @@ std::vector<Parameter> melted_numbers() {
       {"coarse_bulge", "m", relief::kCoarseBulge,
        "of meshes whose walls do not lean: scans from the street have 0.024, sparse ones 0.07"},
       {"wide", "m", relief::kWide,
-       "median edge: nothing but roofs and walls can be told, however flat they are"},
+       "typical edge: nothing but roofs and walls can be told, however flat they are"},
       {"wide_bulge", "m", relief::kWideBulge, "of such meshes"},
       {"least_drawn", "", kLeastDrawn,
        "share of the surface that is upright or level to the last digit: what people draw"},
@@ -34,7 +34,7 @@ std::vector<Parameter> melted_numbers() {
       {"wide_explained", "", relief::kWideExplained,
        "likewise, of wide edges: scraps under a roof make up the rest"},
       {"least_reach", "m", relief::kLeastReach, "near, at least"},
-      {"least_span", "m", relief::kLeastSpan, "width of bumps, at least; else the median edge"},
+      {"least_span", "m", relief::kLeastSpan, "width of bumps, at least; else the typical edge"},
       {"patch_price", "", relief::kPatchPrice,
        "bumps' squares of noise that a roof's plane must explain; half of it changes hardly "
        "anything on 66 cut-outs"},
