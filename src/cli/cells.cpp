@@ -188,7 +188,7 @@ int merge(const CellArguments& a) {
   });
   keep_switching(a.plan.path, scene);
   log_problems(scene, log);
-  for (const Message& m : outcome.messages) log.message(m);
+  log.messages(outcome.messages);
   log.message(summary_of(scene, outcome.tally, seconds(), a.output.out));
   return exit_code(scene, outcome.tally);
 }
@@ -284,7 +284,7 @@ int export_shard(const CellArguments& a) {
                           .tell = [&](const Message& m) { log.message(m); }};
     CellOutcome own = export_cell(common, tasks, shelf);
     outcome.tally += own.tally;
-    for (const Message& m : own.messages) log.message(m);
+    log.messages(own.messages);
   });
   return exit_code(Scene{}, outcome.tally);
 }

@@ -61,4 +61,8 @@ void Log::message(const Message& message) const {
   std::fprintf(stderr, "colod: %s%s\n", prefix.c_str(), one_line(text).c_str());
 }
 
+void Log::messages(const std::vector<Message>& all) const {
+  for (const Message& m : is_json_ ? all : gathered(all)) message(m);
+}
+
 }  // namespace colod::cli

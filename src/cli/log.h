@@ -22,6 +22,8 @@ class Log {
   void progress(const std::string& building, const char* stage, int done, int total) const;
   /// Quiet runs print errors only.
   void message(const Message& message) const;
+  /// As JSON each, for a person those that are alike as one.
+  void messages(const std::vector<Message>& all) const;
 
  private:
   bool is_quiet_, is_json_, is_terminal_;

@@ -10,7 +10,7 @@ void add_output_arguments(CLI::App& app, OutputArguments& a) {
 }
 
 void log_problems(const Scene& scene, const Log& log) {
-  for (const Message& m : problems_of(scene)) log.message(m);
+  log.messages(problems_of(scene));
 }
 
 int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::time_point start,

@@ -283,7 +283,7 @@ int mesh(const StageArguments& a) {
       outcome += mesh_scene(store, log);
     });
   }
-  for (const Message& m : outcome.messages) log.message(m);
+  log.messages(outcome.messages);
   return exit_code(Scene{}, outcome.tally);
 }
 

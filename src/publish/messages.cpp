@@ -1,6 +1,8 @@
 #include "messages.h"
 
+#include <cctype>
 #include <iomanip>
+#include <map>
 #include <sstream>
 
 #include "core/error.h"
@@ -8,6 +10,24 @@
 #include "pipeline/stand_ins.h"
 
 namespace colod {
+namespace {
+
+constexpr std::size_t kMostAlike = 5;  // lines of one kind
+
+/// Where the name of what a message is about ends; 0: it has none.
+std::size_t place_end(const std::string& text) {
+  const std::size_t end = text.find(": ");
+  return end == std::string::npos ? 0 : end;
+}
+
+/// A message without its name and its numbers.
+std::string kind_of(const std::string& text) {
+  std::string kind = text.substr(place_end(text));
+  std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
+  return kind;
+}
+
+}  // namespace
 
 std::vector<Message> problems_of(const Building& b) {
   std::vector<Message> to;
@@ -38,6 +58,25 @@ std::vector<Message> problems_of(const Scene& scene) {
   for (const Building& b : scene.buildings)
     for (Message& m : problems_of(b)) all.push_back(std::move(m));
   return all;
+}
+
+std::vector<Message> gathered(const std::vector<Message>& messages) {
+  std::map<std::string, std::vector<std::size_t>> alike;
+  for (std::size_t i = 0; i < messages.size(); ++i)
+    if (messages[i].level == Level::kWarning && place_end(messages[i].text) > 0)
+      alike[kind_of(messages[i].text)].push_back(i);
+  std::vector<Message> told = messages;
+  std::vector<char> is_told(messages.size(), 1);
+  for (const auto& [kind, which] : alike) {
+    if (which.size() <= kMostAlike) continue;
+    for (const std::size_t i : which) is_told[i] = i == which[0];
+    std::string& first = told[which[0]].text;
+    first.insert(place_end(first), " and " + std::to_string(which.size() - 1) + " others");
+    first += "; --log-json tells of each";
+  }
+  std::size_t next = 0;
+  std::erase_if(told, [&](const Message&) { return !is_told[next++]; });
+  return told;
 }
 
 Message summary_of(const Scene& scene, const Tally& tally, double seconds, const std::string& out) {
