@@ -9,9 +9,7 @@ void add_output_arguments(CLI::App& app, OutputArguments& a) {
   add_output_options(app, a.options);
 }
 
-void log_problems(const Scene& scene, const Log& log) {
-  log.messages(problems_of(scene));
-}
+void log_problems(const Scene& scene, const Log& log) { log.messages(problems_of(scene)); }
 
 int write_all(Scene& scene, const Options& options, std::chrono::steady_clock::time_point start,
               Pictures pictures, Depot& depot, const OutputArguments& a, const Log& log) {

@@ -16,7 +16,6 @@ constexpr double kManyValleys = 0.3;   // … and 0.42 to 0.52, a roof has hardl
 constexpr double kHardlyEnclosed = 0.1;         // of the layer's volume
 constexpr double kThin = 1, kThinShare = 0.08;  // metres, and of the root of the layer's area
 constexpr double kFalseTops = 0.5;              // 72 airborne clouds have 0.3 at most
-constexpr double kMostLeftOut = 0.5;  // over a found plan: ground around a shed of 3 m has 0.44
-constexpr double kFalseSides = 0.3;   // a corner of two walls has 0.46, walls all round have 0
+constexpr double kFalseSides = 0.3;  // a corner of two walls has 0.46, walls all round have 0
 
 }  // namespace colod::parameters::scene_part

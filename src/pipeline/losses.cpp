@@ -10,7 +10,6 @@
 
 #include "core/flat.h"
 #include "measure/lost_bodies.h"
-#include "measure/parameters.h"
 #include "measure/scene_part.h"
 #include "relief/relief.h"
 #include "scene/left_out.h"
@@ -123,19 +122,8 @@ void weigh_finest(const Surface& source, Building& b) {
   }
 }
 
-std::string judge_found(const Building& b) {
-  if (!b.source.is_found) return "";
-  double share = 0;
-  for (const LeftOut& l : b.left_out) share += l.reason == LeftOut::Reason::kInside ? 0 : l.share;
-  if (share <= parameters::scene_part::kMostLeftOut) return "";
-  return b.source.name + ": was found, and is no building: " + percent(share) +
-         " of what lies over its plan is ground, stands about on it, or is on no layer; it is left "
-         "as the source shows it, --footprints with its plan builds it all the same";
-}
-
 std::string judge_building(const Surface& source, const Building& b) {
   if (b.layers.empty() || !b.layers.back().failure.empty()) return "";
-  if (std::string none = judge_found(b); !none.empty()) return none;
   const std::string why = judge_scene(survey_layer(source, b.layers.back().mesh, b.solid));
   if (why.empty()) return "";
   return b.source.name + ": this looks like a part of a scene: " + why +

@@ -17,12 +17,7 @@ void weigh_finest(const Surface& source, Building& building);
 /// Of a building that failed as a whole nothing more is lost.
 void forget_losses(Building& building);
 
-/// Why what was found on a place is no building: most of what lies over its plan is left out, as
-/// far as that is known yet. Empty: it may be one, or its plan was given.
-std::string judge_found(const Building& building);
-
-/// That, of all that is left out, or why the finest layer is no building's (measure/scene_part.h);
-/// empty: it is one.
+/// Why the finest layer is no building's (measure/scene_part.h); empty: it is one.
 std::string judge_building(const Surface& source, const Building& building);
 
 /// Warnings of a ragged finest layer, and of what was lost or left out over a stated share

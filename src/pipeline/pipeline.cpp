@@ -60,6 +60,7 @@ void find_planes(Building& b, const Options& o) {
 }
 
 void find_segments(Building& b, const Options& o) {
+  find_planes(b, o);
   b.segments =
       build_segments(b.planes, {.rules = o.rules,
                                 .alcove_area = o.alcove_area,
@@ -281,13 +282,10 @@ Building segment_building(Turn turn, const Options& options) {
     b.frame = main_frame(source);
     b.timings.read = source.read_seconds;
     b.source = localize(source, b.frame);
-    find_planes(b, options);
+    find_segments(b, options);
     b.left_out = b.source.left_out;
     note_look(b);
     tell_parted(b);
-    if (options.rules.has(Rule::kScenePart)) b.failure = judge_found(b);
-    b.is_dismissed = !b.failure.empty();
-    if (!b.is_dismissed) find_segments(b, options);
   } catch (const Error& e) {
     b.failure = e.what();
   } catch (const std::exception& e) {  // a library gave up: this building's problem only

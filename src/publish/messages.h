@@ -26,8 +26,8 @@ std::vector<Message> problems_of(const Scene& scene);
 /// Of one building.
 std::vector<Message> problems_of(const Building& building);
 
-/// For a person: warnings of more than five buildings that differ in names and numbers alone are one
-/// line, where the first of them stands.
+/// For a person: warnings of more than five buildings that differ in names and numbers alone are
+/// one line, where the first of them stands.
 std::vector<Message> gathered(const std::vector<Message>& messages);
 
 /// "n of m buildings in s s, written to OUT …". `tally` is the sum of the scene's buildings, which

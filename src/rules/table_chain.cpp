@@ -105,10 +105,7 @@ std::vector<RuleInfo> soundness_rules() {
       {.rule = Rule::kScenePart,
        .id = "chain.scene_part",
        .title = "what looks like a part of a scene is refused",
-       .sees = "An open source and its finest layer: terrain, a bare wall, or mostly invention; "
-               "and what "
-               "was found on a place by the program where most that lies over its plan is ground "
-               "or lost.",
+       .sees = "An open source and its finest layer: terrain, a bare wall, or mostly invention.",
        .does = "Fails the building with the reason; nothing is written for it. What was found on a "
                "place "
                "is no failure: it stays as the source shows it, with a warning.",
@@ -135,9 +132,7 @@ std::vector<RuleInfo> soundness_rules() {
             {"false_tops", "", scene_part::kFalseTops,
              "invented of the tops: 72 airborne clouds have 0.3 at most"},
             {"false_sides", "", scene_part::kFalseSides,
-             "invented of the sides: a corner of two walls has 0.46, walls all round have 0"},
-            {"most_left_out", "", scene_part::kMostLeftOut,
-             "of what lies over a found plan: ground around a shed three metres square has 0.44"}},
+             "invented of the sides: a corner of two walls has 0.46, walls all round have 0"}},
        .needs = {},
        .test = "pipeline/losses: terrain, walls and corners look like parts of a scene",
        .made_on = {"als/block-a", "bocimi-buildings", "ingolstadt-north", "mvs"}}};

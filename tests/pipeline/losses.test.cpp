@@ -10,7 +10,6 @@
 #include "publish/messages.h"
 #include "publish/report.h"
 #include "scene/left_out.h"
-#include "scenes.h"
 
 using namespace colod;
 using namespace colod::test;
@@ -99,24 +98,6 @@ TEST_CASE("terrain, walls and corners look like parts of a scene") {
     CHECK(!wall.has_lost());
     CHECK_THAT(failure_of(walls(w, w / 2, 0.7 * w)), Catch::Contains("part of a scene"));
   }
-}
-
-TEST_CASE("what was found where most is ground is no building; of a plan that was given it is") {
-  for (const double w : {3.0, 6.0, 15.0})
-    for (const bool is_wide : {true, false}) {
-      const double plot = is_wide ? 3 * w : w + 3, h = is_wide ? w / 3 : std::max(2.5, w / 3);
-      CAPTURE(w, plot);
-      const Vec3 low(0.5 * (plot - w), 0.5 * (plot - w), 0);
-      Source source = as_source(terrain_with_boxes(plot, w / 6, {{low, low + Vec3(w, w, h)}}));
-      const Building given = build(source).buildings[0];
-      CHECK(given.failure == "");
-      source.is_found = true;
-      const Building found = build(source).buildings[0];
-      CHECK(found.is_dismissed == is_wide);
-      CHECK(found.layers.empty() == is_wide);
-      CHECK(found.descriptors.empty() == is_wide);
-      if (is_wide) CHECK_THAT(found.failure, Catch::Contains("is no building"));
-    }
 }
 
 TEST_CASE("a wall that was found is no failure, and nothing of it is written") {
