@@ -46,7 +46,8 @@ int main(int argc, char** argv) {
     for (const SceneClass c : classes.of_cell) file.put(static_cast<char>(c));
     file.write(reinterpret_cast<const char*>(classes.ground.data()),
                static_cast<std::streamsize>(classes.ground.size() * sizeof(float)));
-    if (!footprints.empty() && !(std::ofstream(footprints) << inputs.found_footprints).flush())
+    const std::string plans = footprints_geojson(inputs.scene->footprints, inputs.scene->place);
+    if (!footprints.empty() && !(std::ofstream(footprints) << plans).flush())
       throw std::runtime_error(footprints + ": cannot be written");
     if (!file.flush()) throw std::runtime_error(out + ": cannot be written");
   } catch (const std::exception& e) {
