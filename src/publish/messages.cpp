@@ -3,6 +3,7 @@
 #include <cctype>
 #include <iomanip>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "core/error.h"
@@ -12,7 +13,7 @@
 namespace colod {
 namespace {
 
-constexpr std::size_t kMostAlike = 5;  // lines of one kind
+constexpr std::size_t kMostAlike = 5;  // whose lines are of one kind
 
 /// Where the name of what a message is about ends; 0: it has none.
 std::size_t place_end(const std::string& text) {
@@ -68,10 +69,13 @@ std::vector<Message> gathered(const std::vector<Message>& messages) {
   std::vector<Message> told = messages;
   std::vector<char> is_told(messages.size(), 1);
   for (const auto& [kind, which] : alike) {
-    if (which.size() <= kMostAlike) continue;
+    std::set<std::string> names;
+    for (const std::size_t i : which)
+      names.insert(messages[i].text.substr(0, place_end(messages[i].text)));
+    if (names.size() <= kMostAlike) continue;
     for (const std::size_t i : which) is_told[i] = i == which[0];
     std::string& first = told[which[0]].text;
-    first.insert(place_end(first), " and " + std::to_string(which.size() - 1) + " others");
+    first.insert(place_end(first), " and " + std::to_string(names.size() - 1) + " others");
     first += "; --log-json tells of each";
   }
   std::size_t next = 0;

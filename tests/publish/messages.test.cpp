@@ -20,6 +20,7 @@ std::vector<Message> melted(int count, Level level = Level::kWarning) {
 TEST_CASE("warnings of many buildings that differ in names and numbers alone are one line") {
   for (const int count : {6, 40, 500}) {
     std::vector<Message> all = melted(count);
+    all.push_back(all[0]);  // of one building twice
     all.insert(all.begin() + 3, {Level::kError, "house-1: a body is on no layer"});
     all.insert(all.begin(), {Level::kWarning, "layers 0 and 1 are alike"});
     const std::vector<Message> told = gathered(all);
