@@ -224,6 +224,12 @@ void list_buildings(const std::shared_ptr<const PartedScene>& scene, Inputs& inp
   inputs.scene = scene;
 }
 
+Error none_found(const std::string& path) {
+  return Error(Stage::kInput, path,
+               "no building was found on it: --footprints names a file with their plans, --scene "
+               "buildings takes each file for one building");
+}
+
 /// The footprints of a file, or those that the surface tells.
 std::vector<Footprint> footprints_of(const SceneTiles& tiles, const SceneChoice& choice,
                                      const std::optional<Georeference>& place, const HeightMap& map,
@@ -232,10 +238,7 @@ std::vector<Footprint> footprints_of(const SceneTiles& tiles, const SceneChoice&
     return on_scene(read_footprints(choice.footprints, choice.footprint_id, place), tiles.box(),
                     choice.footprints, place.has_value(), out.inventory);
   std::vector<Footprint> found = outline_buildings(map, classes);
-  if (found.empty())
-    throw Error(Stage::kInput, tiles.tree().path,
-                "no building was found on it: --footprints names a file with their plans, --scene "
-                "buildings takes each file for one building");
+  if (found.empty()) throw none_found(tiles.tree().path);
   return found;
 }
 
@@ -434,6 +437,7 @@ void add_place(const Inputs& inputs, Scene& built) {
   if (!inputs.scene) return;
   const PartedScene& place = *inputs.scene;
   leave_out_dismissed(built);
+  if (built.buildings.empty()) throw none_found(place.tiles.tree().path);
   std::map<std::string, bool> has_mesh;
   for (const Building& b : built.buildings)
     has_mesh[b.source.name] = std::any_of(b.layers.begin(), b.layers.end(),

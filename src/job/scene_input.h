@@ -50,7 +50,7 @@ struct SceneOutput {
 
 /// What a scene has beside its buildings: those without a mesh stay in the context as the source
 /// shows them, and what was dismissed goes from the buildings and the footprints. Nothing for files
-/// with buildings.
+/// with buildings. Throws Error{kInput} where all were dismissed.
 void add_place(const Inputs& inputs, Scene& built);
 
 /// Tells what an INPUT is taken for, and why. Throws Error{kInput} for inputs that are not there or

@@ -139,12 +139,14 @@ std::optional<double> main_direction(const std::vector<Rough>& pieces, double le
 }
 
 /// Metres and normals: pieces that follow a direction get it exactly.
-void follow(double direction, double within, std::vector<Rough>& pieces) {
+void follow(double direction, double within, double tolerance, std::vector<Rough>& pieces) {
   for (Rough& r : pieces) {
     if (r.line >= 0) continue;
     const double angle = std::atan2(r.normal.y(), r.normal.x());
     const double off = std::remainder(angle - direction, kQuarter);
-    if (std::abs(off) > (r.length < kShortPiece ? 2 * within : within)) continue;
+    const bool is_short =
+        r.length < kShortPiece || r.length * std::abs(std::sin(off)) < kAside * tolerance;
+    if (std::abs(off) > (is_short ? 2 * within : within)) continue;
     r.normal = {std::cos(angle - off), std::sin(angle - off)};
     r.line = 0;
   }
@@ -368,9 +370,9 @@ Borders find_borders(const Field& field, const Labels& labels, const std::vector
                      double direction, double tolerance) {
   const std::vector<Chain> chains = chains_of(field, labels, tolerance);
   std::vector<Rough> rough = rough_pieces(chains, tolerance);
-  follow(direction, kFollow, rough);
+  follow(direction, kFollow, tolerance, rough);
   if (const auto second = main_direction(rough, kSecondShare * total_length(rough)))
-    follow(*second, kFollow, rough);
+    follow(*second, kFollow, tolerance, rough);
   square_short(direction, kOblique * tolerance, rough);
   Borders borders;
   borders.lines = gather(tolerance, rough);

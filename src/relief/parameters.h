@@ -85,7 +85,8 @@ constexpr double kLowIsland = 3, kLowIslandShare = 0.5;  // metres, and of its h
 // Borders.
 constexpr double kSpread = 0.07;       // radians (4°) that pieces of one direction spread
 constexpr double kFollow = 0.26;       // radians (15°): a piece takes the building's direction …
-constexpr double kShortPiece = 3;      // metres: … twice that if shorter
+constexpr double kShortPiece = 3;      // metres: … twice that if shorter, or if it goes aside …
+constexpr double kAside = 2;           // … by less than so many tolerances
 constexpr double kSecondShare = 0.15;  // of all length: another direction
 constexpr double kOblique = 5;         // tolerances: what is shorter and oblique is a corner
 constexpr double kParallel = 0.05;     // sine between pieces that may share a line

@@ -105,4 +105,6 @@ TEST_CASE("what was dismissed goes from the buildings and the footprints, with a
   CHECK(scene.found_footprints.find("\"" + gone + "\"") == std::string::npos);
   CHECK(roof_in_context(scene, kHouses[0]) + roof_in_context(scene, kHouses[1]) ==
         Approx(80).margin(10));
+  scene.buildings[0].is_dismissed = true;
+  CHECK_THROWS_WITH(add_place(inputs, scene), Catch::Contains("no building was found on it"));
 }
