@@ -44,7 +44,7 @@ std::vector<Side> sides_of(const Mesh& mesh) {
   return sides;
 }
 
-/// Metres: a third of the surface has shorter edges, which is the median of a mesh of even
+/// Metres: nearly a third of the surface has shorter edges, about the median of a mesh of even
 /// triangles. By area, since a mesh that was cut out of a place has slivers along its rim.
 double typical_edge(const Mesh& mesh) {
   std::vector<std::pair<double, double>> areas;  // by length

@@ -6,7 +6,7 @@
 namespace colod::relief {
 
 struct Melting {
-  double edge = 0;    ///< metres: typical edge, that of a mesh of even triangles
+  double edge = 0;    ///< metres: the typical one, about the median of even triangles
   double bulge = 0;   ///< metres: residual of a piece of wall or roof as wide as a window
   double lean = 0;    ///< z of the walls' outward normals, their mean: noise leans both ways
   double drawn = 0;   ///< 0..1 of the area: as people draw (core/drawn.h)

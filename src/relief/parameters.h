@@ -6,7 +6,7 @@
 
 namespace colod::parameters::relief {
 
-constexpr double kEdgeShare = 0.35;  // of the surface: its shorter edges end at the typical one
+constexpr double kEdgeShare = 0.3;   // of the surface: its shorter edges end at the typical one
 constexpr double kCellShare = 0.35;  // of the typical edge: a cell
 constexpr double kLeastCell = 0.1, kMostCell = 0.5;  // metres
 constexpr double kMostCells = 400;                   // along the longer side
