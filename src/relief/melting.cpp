@@ -168,7 +168,9 @@ Shadow shadow_of(const Mesh& mesh, const Face& face) {
 
 bool Melting::is_leaning() const { return lean > kLeastLean; }
 bool Melting::is_wide() const { return edge > kWide && bulge > kWideBulge; }
-bool Melting::is_coarse() const { return is_wide() || bulge > kCoarseBulge; }
+bool Melting::is_coarse() const {
+  return is_wide() || (bulge > kCoarseBulge && std::max(edge, kToldBulges * bulge) > kCoarse);
+}
 bool Melting::is_melted() const {
   return bulge > kExactBulge && drawn < kLeastDrawn && (is_leaning() || is_coarse());
 }

@@ -26,7 +26,8 @@ constexpr std::size_t kMostSides = 400;               // of a cube of that size,
 constexpr double kAlike = 0.5;                        // cosine between their normals
 constexpr double kExactBulge = 0.003;                 // metres: less is exact, or nearly so
 constexpr double kSteepest = 0.4, kLeastLean = 0.04;  // |z| of walls' normals, and its mean
-constexpr double kCoarseBulge = 0.08;                 // metres, or …
+constexpr double kCoarseBulge = 0.08;                 // metres, and …
+constexpr double kCoarse = 0.35, kToldBulges = 2.4;  // … metres of edge, or of so many bulges; or …
 constexpr double kWide = 0.8, kWideBulge = 0.05;  // … with an edge that tells no window at all
 constexpr double kLeastReach = 0.3, kReachBulges = 5, kReachEdges = 0.5;  // metres, bulges, edges
 constexpr double kLeastSupport = 0.1;   // of the walls that are drawn: seen, in part

@@ -21,6 +21,8 @@ std::vector<Parameter> melted_numbers() {
       {"wide", "m", relief::kWide,
        "typical edge: nothing but roofs and walls can be told, however flat they are"},
       {"wide_bulge", "m", relief::kWideBulge, "of such meshes"},
+      {"coarse", "m", relief::kCoarse,
+       "typical edge, or 2.4 bulges: windows cannot be told; small round towers bulge as much"},
       {"least_drawn", "", kLeastDrawn,
        "share of the surface that is upright or level to the last digit: what people draw"},
       {"least_support", "", relief::kLeastSupport,
