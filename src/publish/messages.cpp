@@ -13,7 +13,7 @@
 namespace colod {
 namespace {
 
-constexpr std::size_t kMostAlike = 5;  // whose lines are of one kind
+constexpr std::size_t kMostAlike = 5;  // buildings, whose lines of one kind are told each
 
 /// Where the name of what a message is about ends; 0: it has none.
 std::size_t place_end(const std::string& text) {

@@ -107,8 +107,7 @@ std::vector<RuleInfo> soundness_rules() {
        .title = "what looks like a part of a scene is refused",
        .sees = "An open source and its finest layer: terrain, a bare wall, or mostly invention.",
        .does = "Fails the building with the reason; nothing is written for it. What was found on a "
-               "place "
-               "is no failure: it stays as the source shows it, with a warning.",
+               "place is no failure: it stays as the source shows it, with a warning.",
        .paper = "The paper is given buildings.",
        .reason = "Patches of terrain were shipped as boxes.",
        .parameters =
