@@ -7,6 +7,7 @@
 // cells and taken from the nearest one elsewhere; rim: covered cells beside the open outside.
 #include "ground.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -133,8 +134,56 @@ std::vector<double> spread_heights(const HeightRaster& r, const std::vector<char
   return h;
 }
 
+/// Metres by which the tops of cells are off one plane, root mean square.
+double unevenness(const HeightRaster& r, const std::vector<char>& is_in) {
+  std::vector<Vec3> points;
+  for (int c = 0; c < r.size(); ++c)
+    if (is_in[c]) points.push_back({c % r.nx * r.cell, c / r.nx * r.cell, r.top[c]});
+  Eigen::MatrixX3d a(points.size(), 3);
+  Eigen::VectorXd z(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    a.row(row) << points[i].x(), points[i].y(), 1;
+    z[row] = points[i].z();
+  }
+  const Vec3 plane = (a.transpose() * a).ldlt().solve(a.transpose() * z);
+  return std::sqrt((a * plane - z).squaredNorm() / std::max<double>(1, z.size()));
+}
+
+/// Whether most of what stands upright on a level is many strips that reach from there to the top
+/// of their cell: a tool's skirt. Measured walls have several faces one above the other.
+bool has_skirt(const Mesh& mesh, const HeightRaster& r, double plate) {
+  double in_one_piece = 0, all = 0;
+  int strips = 0;
+  for (const Face& f : mesh.faces) {
+    const Vec3 &a = mesh.vertices[f[0]], &b = mesh.vertices[f[1]], &c = mesh.vertices[f[2]];
+    const Vec3 cross = face_cross(mesh, f);
+    const double low = std::min({a.z(), b.z(), c.z()}), high = std::max({a.z(), b.z(), c.z()});
+    const bool stands = std::abs(cross.z()) < kPlate * cross.norm() && low <= plate + kPlate;
+    if (!stands || !cross.allFinite()) continue;
+    all += cross.norm();
+    if (high < r.top[r.cell_of((a + b + c) / 3)] - kNoise - kSteepest * r.cell) continue;
+    in_one_piece += cross.norm();
+    ++strips;
+  }
+  return strips >= kLeastStrips && in_one_piece >= kOnePiece * all;
+}
+
+/// Terrain that a tool has closed: uneven, with a skirt in strips and one level plate below it all.
+bool is_closed_plot(const Mesh& mesh, const HeightRaster& r, const std::vector<char>& is_terrain) {
+  const double plate = *std::min_element(r.low.begin(), r.low.end());
+  int covered = 0, over_plate = 0;
+  for (int c = 0; c < r.size(); ++c) {
+    covered += r.is_covered(c);
+    over_plate += r.is_covered(c) && r.low[c] <= plate + kPlate;
+  }
+  return over_plate >= kUnderPlate * covered && unevenness(r, is_terrain) >= kUnevenTop &&
+         has_skirt(mesh, r, plate);
+}
+
 /// The smooth surface with most of the rim; empty: no ground.
-std::vector<char> main_surface(const HeightRaster& r, const std::vector<char>& is_rim) {
+std::vector<char> main_surface(const Mesh& mesh, const HeightRaster& r,
+                               const std::vector<char>& is_rim) {
   int count = 0;
   const double step = kNoise + kSteepest * r.cell;
   const std::vector<int> surface = connect(
@@ -155,10 +204,10 @@ std::vector<char> main_surface(const HeightRaster& r, const std::vector<char>& i
     r.around(c, reach, [&](int d) { low = std::min(low, r.low[d]); });
     free += low > r.top[c] - kRise;
   }
-  if (free < kMostly * rim[best]) return {};
   std::vector<char> is_ground(r.size(), 0);
   for (int c = 0; c < r.size(); ++c) is_ground[c] = surface[c] == best;
-  return is_ground;
+  const bool is_free = free >= kMostly * rim[best];
+  return is_free || is_closed_plot(mesh, r, is_ground) ? is_ground : std::vector<char>();
 }
 
 /// Most cells at the buildings' border have a wall that comes down to the ground.
@@ -231,7 +280,7 @@ Site survey(const Mesh& mesh) {
   Site site{rasterize(mesh), {}, {}, 0};
   const HeightRaster& r = site.raster;
   if (r.size() == 0) return site;
-  const std::vector<char> is_ground = main_surface(r, find_rim(r));
+  const std::vector<char> is_ground = main_surface(mesh, r, find_rim(r));
   if (is_ground.empty()) return site;
   site.ground = spread_heights(r, is_ground);
   const std::vector<double>& h = site.ground;

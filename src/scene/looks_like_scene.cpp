@@ -153,7 +153,10 @@ PlaceFromAbove place_of(const Mesh& mesh, const std::vector<Edge>& open, const H
 
 bool is_bare(const PlaceFromAbove& plan, std::ptrdiff_t houses) {
   if (plan.ground < kBareGround) return false;
-  return (plan.side >= kLeastSide && houses == 0) || (plan.is_tile && plan.built <= kBareBuilt);
+  const bool has_whole_house =
+      houses > 0 && std::none_of(plan.groups.begin(), plan.groups.end(), is_cut_off);
+  return (plan.side >= kLeastSide && houses == 0) ||
+         (plan.is_tile && plan.built <= kBareBuilt && !has_whole_house);
 }
 
 bool is_cut_through(const PlaceFromAbove& plan) {

@@ -22,6 +22,12 @@ constexpr double kSmallBlob = 0.05;     // of the largest one's area
 constexpr double kGroundLayer = 0.4;    // metres: level faces this near to the ground are its own
 constexpr double kGroundNormal = 0.35;  // of a level face, upright: the ground banks up at walls
 constexpr double kOnGround = 0.5;       // metres: what ends lower is part of the ground
+// A rim closed down to a plate deeper than a storey, as watertight reconstructions close it.
+constexpr double kPlate = 0.02;       // metres by which the plate is level
+constexpr double kUnderPlate = 0.95;  // of what is covered that has the plate below it
+constexpr double kUnevenTop = 0.05;   // metres from one plane, root mean square: a flat roof is even
+constexpr double kOnePiece = 0.8;     // of the skirt's area in faces from the rim to the plate
+constexpr int kLeastStrips = 64;      // of its faces: a drawn building has fewer sides
 
 }  // namespace colod::parameters::ground
 
@@ -256,7 +262,7 @@ constexpr int kLeastHouses = 3;          // that stand apart: two may be a house
 constexpr int kTogether = 5;             // cells: 2 m between roofs is no gap
 constexpr int kLeastHousesOfTile = 2;    // where it is cut straight
 constexpr double kBareGround = 0.75;     // of the plan, where no building stands
-constexpr double kBareBuilt = 0.03;      // of a tile: the largest plots are 20 times a house
+constexpr double kBareBuilt = 0.03;      // of a tile where no house stands whole
 constexpr double kAtTop = 1;             // metres: the foot of a wall lies lower
 constexpr double kMostAtTop = 0.5;       // of a tile's border
 constexpr double kFilled = 0.8;          // of its box that a tile covers; cut-outs 0.75 at most

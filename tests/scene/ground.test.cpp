@@ -46,6 +46,27 @@ void expect_unchanged(const Mesh& mesh) {
   CHECK(s.warnings.empty());
 }
 
+/// Terrain in pieces of a metre that waves by so much, its rim closed by strips down to a plate.
+Mesh reconstructed_plot(double size, double depth, double waves) {
+  Mesh m = terrain(-size / 2, -size / 2, size / 2, size / 2);
+  for (Vec3& p : m.vertices) p.z() = waves * std::sin(p.x() / 5) * std::cos(p.y() / 7);
+  const auto n = static_cast<int>(size);
+  std::vector<int> rim;
+  for (int i = 0; i < n; ++i) rim.push_back(i);
+  for (int i = 0; i < n; ++i) rim.push_back(i * (n + 1) + n);
+  for (int i = n; i > 0; --i) rim.push_back(n * (n + 1) + i);
+  for (int i = n; i > 0; --i) rim.push_back(i * (n + 1));
+  const auto base = static_cast<int>(m.vertices.size()), count = static_cast<int>(rim.size());
+  for (const int v : rim) m.vertices.push_back({m.vertices[v].x(), m.vertices[v].y(), -depth});
+  for (int i = 0; i < count; ++i) {
+    const int next = (i + 1) % count;
+    m.faces.push_back({rim[i], base + i, base + next});
+    m.faces.push_back({rim[i], base + next, rim[next]});
+    if (i > 1) m.faces.push_back({base, base + i, base + i - 1});
+  }
+  return m;
+}
+
 }  // namespace
 
 TEST_CASE("the house is kept, its ground is not") {
@@ -156,6 +177,18 @@ TEST_CASE("a plot of any size is ground, also with a skirt and a plate below") {
       const Source s = separated(test::join(moved(house(), {-4, -3, 0}), plot));
       REQUIRE(s.left_out.size() == 1);
       CHECK(surface_area(s.mesh) == Approx(surface_area(house())).epsilon(0.1));
+    }
+}
+
+TEST_CASE("a plot that is closed down to a plate is ground however deep, an even one is a podium") {
+  for (const double size : {30.0, 48.0, 90.0})
+    for (const double depth : {1.0, 3.0, 10.0}) {
+      INFO(size << " m, " << depth << " m deep");
+      const Mesh on_it = moved(house(), {-4, -3, 0});
+      const Source s = separated(test::join(on_it, reconstructed_plot(size, depth, 0.15)));
+      REQUIRE(s.left_out.size() == 1);
+      CHECK(surface_area(s.mesh) == Approx(surface_area(house())).epsilon(0.1));
+      if (depth > 2) expect_unchanged(test::join(on_it, reconstructed_plot(size, depth, 0)));
     }
 }
 
