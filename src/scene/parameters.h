@@ -25,9 +25,9 @@ constexpr double kOnGround = 0.5;       // metres: what ends lower is part of th
 // A rim closed down to a plate deeper than a storey, as watertight reconstructions close it.
 constexpr double kPlate = 0.02;       // metres by which the plate is level
 constexpr double kUnderPlate = 0.95;  // of what is covered that has the plate below it
-constexpr double kUnevenTop = 0.05;   // metres from one plane, root mean square: a flat roof is even
-constexpr double kOnePiece = 0.8;     // of the skirt's area in faces from the rim to the plate
-constexpr int kLeastStrips = 64;      // of its faces: a drawn building has fewer sides
+constexpr double kUnevenTop = 0.05;  // metres from one plane, root mean square: a flat roof is even
+constexpr double kOnePiece = 0.8;    // of the skirt's area in faces from the rim to the plate
+constexpr int kLeastStrips = 64;     // of its faces: a drawn building has fewer sides
 
 }  // namespace colod::parameters::ground
 

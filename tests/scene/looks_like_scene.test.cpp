@@ -64,7 +64,8 @@ TEST_CASE("a tile of terrain with a tree is a piece of terrain, one with a small
   CHECK_FALSE(plot.is_certain);
 }
 
-TEST_CASE("one house is one building however large its plot, but not where the border cuts it off") {
+TEST_CASE(
+    "one house is one building however large its plot, but not where the border cuts it off") {
   const double side = GENERATE(45, 60, 90);
   CAPTURE(side);
   CHECK_FALSE(looks_like_scene(tile_with(side, {house(side / 3, side / 3, 10, 6)})).is_certain);
