@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -36,6 +38,14 @@ void end_between_files() {
 /// A limit on the size of files is an error like a full disk, with a message and nothing left
 /// half-written.
 void let_large_writes_fail() { std::signal(SIGXFSZ, SIG_IGN); }
+
+/// What is freed is kept for the next one who asks: glibc would give each larger block back to the
+/// system, which clears the same pages again, half of all page faults of a build.
+void keep_freed_memory() {
+  constexpr int kMebibyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * kMebibyte);  // the most that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 256 * kMebibyte);
+}
 
 int run(int argc, char** argv) {
   CLI::App app{
@@ -82,6 +92,7 @@ int main(int argc, char** argv) {
   try {
     end_between_files();
     let_large_writes_fail();
+    keep_freed_memory();
     return run(argc, argv);
   } catch (const colod::Error& e) {
     std::fprintf(stderr, "colod: %s\n", colod::cli::one_line(e.what()).c_str());
