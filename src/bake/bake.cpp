@@ -8,12 +8,13 @@
 #include <cmath>
 #include <optional>
 
+#include "blank.h"
 #include "charts.h"
 #include "core/error.h"
 #include "core/flat.h"
 #include "core/nearest.h"
 #include "core/parallel.h"
-#include "core/spread.h"
+#include "facet_colors.h"
 #include "fill.h"
 #include "image/look_sampler.h"
 #include "owners.h"
@@ -32,8 +33,6 @@ namespace {
 
 constexpr int kSquare = 64;  // texels a side that one task draws
 constexpr int kUnasked = -2;
-constexpr double kColorSampleArea = 0.25;  // m² of a facet that a sample stands for
-constexpr int kMostColorSamples = 256;
 
 /// How often texels were found in which way, and the sum of the light of those seen: the others
 /// repeat the rim of what is.
@@ -47,12 +46,6 @@ struct Tally {
     seen += t.seen, nearest += t.nearest, missing += t.missing, light += t.light;
   }
 };
-
-/// Keeps references to both.
-Probe::Holes holes_in(const LookSampler& sampler, Lens& lens) {
-  if (!sampler.has_holes()) return {};
-  return [&](int face, const Vec3& point) { return sampler.is_hole(face, point, lens); };
-}
 
 /// A square of texels of a chart; windows are of the atlas.
 struct Task {
@@ -90,6 +83,11 @@ class Painter {
         mesh_(mesh),
         reach_(options.reach) {
     charts_ = find_charts(mesh);
+    sights_.resize(charts_.size());
+    parallel_for(charts_.size(), [&](std::size_t c) {
+      sights_[c] = Sight(source_, probe_, charts_[c], reach_);
+      charts_[c].is_blank = is_blank(mesh_, charts_[c], sights_[c]);
+    });
     atlas_ = pack_charts(charts_, std::max(options.texel, sampler.texel()), options.largest);
     if (atlas_.width == 0)
       throw Error(Stage::kProcess, "texture",
@@ -108,9 +106,6 @@ class Painter {
     out.image = Raster(atlas_.width, atlas_.height);
     is_known_.assign(out.image.rgb.size() / 3, 0);
     if (normals_) out.normals = flat_normals();
-    sights_.resize(charts_.size());
-    parallel_for(charts_.size(),
-                 [&](std::size_t c) { sights_[c] = Sight(source_, probe_, charts_[c], reach_); });
     const std::vector<Task> tasks = list_tasks();
     std::vector<Tally> tallies(tasks.size());
     parallel_for(tasks.size(), [&](std::size_t i) { draw(tasks[i], out, tallies[i]); });
@@ -120,6 +115,7 @@ class Painter {
       of_chart[static_cast<std::size_t>(tasks[i].chart)].add(tallies[i]);
       total.add(tallies[i]);
     }
+    count_blank(of_chart, total);
     fill(of_chart, total, out.image);
     out.facts = facts(of_chart, total);
     out.uvs = coordinates();
@@ -136,6 +132,7 @@ class Painter {
   std::vector<Task> list_tasks() const {
     std::vector<Task> tasks;
     for (std::size_t c = 0; c < charts_.size(); ++c) {
+      if (charts_[c].is_blank) continue;
       const PackedRect& r = atlas_.rects[c];
       for (int y = 0; y < r.height; y += kSquare)
         for (int x = 0; x < r.width; x += kSquare)
@@ -146,9 +143,13 @@ class Painter {
     return tasks;
   }
 
-  Vec2 to_texels(std::size_t chart, const Vec2& q) const {
-    const PackedRect& r = atlas_.rects[chart];
-    return q / atlas_.texel + Vec2(r.x + kGutter, r.y + kGutter);
+  /// As if blank charts had the texels that others have.
+  void count_blank(std::vector<Tally>& of_chart, Tally& total) const {
+    for (std::size_t c = 0; c < charts_.size(); ++c) {
+      if (!charts_[c].is_blank) continue;
+      of_chart[c].missing = std::llround(charts_[c].area / (atlas_.texel * atlas_.texel));
+      total.add(of_chart[c]);
+    }
   }
 
   /// The chart's triangles that come near a window, in texels.
@@ -160,7 +161,7 @@ class Painter {
       Corners c;
       Vec2 least = Vec2::Constant(INFINITY), most = Vec2::Constant(-INFINITY);
       for (int k = 0; k < 3; ++k) {
-        c.at[k] = to_texels(chart, charts_[chart].flat(mesh_.vertices[mesh_.triangles[t][k]]));
+        c.at[k] = place(chart, t, k);
         least = least.cwiseMin(c.at[k]), most = most.cwiseMax(c.at[k]);
       }
       if (cross(c.at[1] - c.at[0], c.at[2] - c.at[0]) < 0) std::swap(c.at[1], c.at[2]);
@@ -385,16 +386,19 @@ class Painter {
     return f;
   }
 
+  /// Of a triangle's corner, in texels.
+  Vec2 place(std::size_t chart, int triangle, int corner) const {
+    const Chart& c = charts_[chart];
+    return atlas_.place(c, chart, c.flat(mesh_.vertices[mesh_.triangles[triangle][corner]]));
+  }
+
   std::vector<std::array<Vec2f, 3>> coordinates() const {
     std::vector<std::array<Vec2f, 3>> uvs(mesh_.triangles.size());
     const Vec2 size(atlas_.width, atlas_.height);
     for (std::size_t c = 0; c < charts_.size(); ++c)
       for (const int t : charts_[c].triangles)
         for (int k = 0; k < 3; ++k)
-          uvs[static_cast<std::size_t>(t)][k] =
-              to_texels(c, charts_[c].flat(mesh_.vertices[mesh_.triangles[t][k]]))
-                  .cwiseQuotient(size)
-                  .cast<float>();
+          uvs[static_cast<std::size_t>(t)][k] = place(c, t, k).cwiseQuotient(size).cast<float>();
     return uvs;
   }
 
@@ -441,55 +445,8 @@ BakedTexture Baker::bake(const PolygonMesh& mesh, const BakeOptions& options) co
       .paint();
 }
 
-namespace {
-
-/// Light times area, and the area that was found.
-using Sum = Eigen::Vector4d;
-
-/// What is seen of a triangle, by samples spread over it.
-Sum look_at(const Mesh& mesh, const Face& f, const Probe& probe, const LookSampler& sampler,
-            const ImageCache& cache, double reach) {
-  const Vec3 turn = face_cross(mesh, f);
-  const double area = 0.5 * turn.norm();
-  Sum sum = Sum::Zero();
-  if (!(area > 0)) return sum;
-  const int n = std::clamp(static_cast<int>(area / kColorSampleArea), 4, kMostColorSamples);
-  Lens lens(cache);
-  for (int k = 1; k <= n; ++k) {
-    const Vec3 p =
-        spread_on_triangle(mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]], k);
-    const Found found = probe.find(p, turn.normalized(), reach, holes_in(sampler, lens));
-    if (found.how == Finding::kNone) continue;
-    const Light light = sampler.sample(found.face, found.point, std::sqrt(kColorSampleArea), lens);
-    sum += area / n * Sum(light[0], light[1], light[2], 1);
-  }
-  return sum;
-}
-
-}  // namespace
-
 std::vector<Rgb> Baker::facet_colors(const PolygonMesh& mesh, double reach) const {
-  const Mesh plain = mesh.mesh();
-  std::vector<Sum> of_triangle(mesh.triangles.size());
-  parallel_for(of_triangle.size(), [&](std::size_t t) {
-    of_triangle[t] =
-        look_at(plain, mesh.triangles[t], impl_->probe, impl_->sampler, impl_->cache, reach);
-  });
-  std::vector<Sum> sums(mesh.facets.size(), Sum::Zero());
-  Sum all = Sum::Zero();
-  for (std::size_t t = 0; t < of_triangle.size(); ++t) {
-    sums[static_cast<std::size_t>(mesh.facet_of_triangle[t])] += of_triangle[t];
-    all += of_triangle[t];
-  }
-  std::vector<Rgb> colors;
-  for (const Sum& s : sums) {
-    const Sum& used = s[3] > 0 ? s : all;
-    Rgb rgb = {128, 128, 128};
-    for (int c = 0; c < 3 && used[3] > 0; ++c)
-      rgb[static_cast<std::size_t>(c)] = to_srgb(static_cast<float>(used[c] / used[3]));
-    colors.push_back(rgb);
-  }
-  return colors;
+  return colors_of_facets(mesh, {impl_->probe, impl_->sampler, impl_->cache, reach});
 }
 
 }  // namespace colod

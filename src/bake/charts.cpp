@@ -29,6 +29,11 @@ Vec3 normal_of(const PolygonMesh& mesh, int facet, const Face& f) {
   return turn.norm() > 0 ? Vec3(turn.normalized()) : Vec3(Vec3::UnitZ());
 }
 
+double area_of(const PolygonMesh& mesh, const Face& f) {
+  const Vec3& a = mesh.vertices[f[0]];
+  return (mesh.vertices[f[1]] - a).cross(mesh.vertices[f[2]] - a).norm() / 2;
+}
+
 bool is_coplanar(const PolygonMesh& mesh, int t, int u) {
   const Face &a = mesh.triangles[t], &b = mesh.triangles[u];
   const Vec3 na = normal_of(mesh, mesh.facet_of_triangle[t], a);
@@ -106,9 +111,14 @@ int round_up(double texels) {
 
 std::vector<PackedRect> rects_of(const std::vector<Chart>& charts, double texel) {
   std::vector<PackedRect> rects;
-  for (const Chart& c : charts)
+  for (const Chart& c : charts) {
+    if (c.is_blank) {
+      rects.push_back({kBlock + 2 * kGutter, kBlock + 2 * kGutter});
+      continue;
+    }
     rects.push_back({round_up(std::max(1.0, c.width / texel - 1e-6) + 2 * kGutter),
                      round_up(std::max(1.0, c.height / texel - 1e-6) + 2 * kGutter)});
+  }
   return rects;
 }
 
@@ -121,15 +131,23 @@ std::vector<Chart> find_charts(const PolygonMesh& mesh) {
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     int& n = number[static_cast<std::size_t>(sets.find(t))];
     if (n < 0) n = static_cast<int>(charts.size()), charts.emplace_back();
-    charts[static_cast<std::size_t>(n)].triangles.push_back(t);
+    Chart& chart = charts[static_cast<std::size_t>(n)];
+    chart.triangles.push_back(t);
+    chart.area += area_of(mesh, mesh.triangles[t]);
   }
   for (Chart& chart : charts) turn_to_smallest(mesh, chart);
   return charts;
 }
 
+Vec2 Atlas::place(const Chart& chart, std::size_t index, const Vec2& q) const {
+  const double own = chart.is_blank ? chart.width / kBlock : texel;
+  return q / own + Vec2(rects[index].x + kGutter, rects[index].y + kGutter);
+}
+
 Atlas pack_charts(const std::vector<Chart>& charts, double texel, int largest) {
   double area = 0, longest = 0;
-  for (const Chart& c : charts) area += c.width * c.height, longest = std::max(longest, c.width);
+  for (const Chart& c : charts)
+    if (!c.is_blank) area += c.width * c.height, longest = std::max(longest, c.width);
   texel = std::max({texel, std::sqrt(area) / largest, longest / largest});
   largest = largest / kBlock * kBlock;
   for (int step = 0; step < kMostSteps; ++step, texel *= kStep) {

@@ -16,6 +16,8 @@ struct Chart {
   Vec3 right = Vec3::UnitX(), down = Vec3::UnitY();  ///< unit, in the plane
   Vec3 normal = Vec3::UnitZ();                       ///< unit, outward
   double width = 0, height = 0;                      ///< metres along right and down; width no less
+  double area = 0;                                   ///< m², of its triangles
+  bool is_blank = false;  ///< nobody saw it: it has one colour, and a single block of the atlas
 
   Vec2 flat(const Vec3& p) const { return {(p - origin).dot(right), (p - origin).dot(down)}; }
   /// How a normal stands on it: x right, y up, z outward; what turns away from it, as on a reveal,
@@ -35,6 +37,9 @@ struct Atlas {
   int width = 0, height = 0;
   double texel = 0;               ///< metres: as asked, or larger where the atlas would not fit
   std::vector<PackedRect> rects;  ///< per chart, with its gutters
+
+  /// In texels; of a blank chart all lies within its block.
+  Vec2 place(const Chart& chart, std::size_t index, const Vec2& q) const;
 };
 
 /// The smallest atlas found whose sides are at most `largest`.

@@ -12,6 +12,11 @@ namespace colod::bake {
 
 using namespace parameters::bake;
 
+Probe::Holes holes_in(const LookSampler& sampler, Lens& lens) {
+  if (!sampler.has_holes()) return {};
+  return [&](int face, const Vec3& point) { return sampler.is_hole(face, point, lens); };
+}
+
 Panes::Panes(const Sight& sight, const SampleGrid& grid, const LookSampler& sampler, Lens& lens)
     : sight_(sight), grid_(grid), sampler_(sampler), lens_(lens), panes_(kPanes) {}
 

@@ -5,9 +5,13 @@
 
 #include "charts.h"
 #include "image/look_sampler.h"
+#include "probe.h"
 #include "sight.h"
 
 namespace colod::bake {
+
+/// What its images leave out. Keeps references to both.
+Probe::Holes holes_in(const LookSampler& sampler, Lens& lens);
 
 /// A face of the source, seen along a chart's normal. Places are in steps of a grid.
 struct Pane {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/flat.h"
 #include "core/parallel.h"
 #include "walls.h"
 
@@ -299,6 +300,33 @@ TEST_CASE("what the source does not show is the building's mean, neither black n
     REQUIRE(std::abs(t.image.rgb[i + 2] - 50) <= 1);
   }
   CHECK(baker.facet_colors(layer, 0.5) == std::vector<Rgb>(2, Rgb{200, 100, 50}));
+}
+
+TEST_CASE(
+    "what nobody saw takes a block of the atlas however large it is, what little is seen its "
+    "place") {
+  const Wall wall(painted(kSide, [](int, int) { return Rgb{200, 100, 50}; }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  const BakedTexture alone = baker.bake(rectangles({{0, 0, kEdge, kEdge}}, 0), {});
+  for (const double size : {0.5, 2.0, 40.0}) {
+    INFO(size << " m that nobody saw");
+    PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0);
+    for (const Vec3& p : rectangles({{0, 0, size, size}}, 30).vertices) layer.vertices.push_back(p);
+    layer.facets.push_back({-Vec3::UnitY(), 1, {{4, 5, 6, 7}}});
+    layer.triangles.insert(layer.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+    layer.facet_of_triangle.insert(layer.facet_of_triangle.end(), {1, 1});
+    const BakedTexture t = baker.bake(layer, {});
+    CHECK(t.image.width * t.image.height <= 1.05 * alone.image.width * alone.image.height);
+    CHECK(t.facts.unseen == Approx(size * size / (size * size + kEdge * kEdge)).margin(0.01));
+    const auto uv = [&](std::size_t triangle, std::size_t k) {
+      return Vec2(t.uvs[triangle][k].x() * t.image.width, t.uvs[triangle][k].y() * t.image.height);
+    };
+    const Vec2 side = uv(2, 1) - uv(2, 0), other = uv(2, 2) - uv(2, 0);
+    CHECK(std::abs(cross(side, other)) > 1);  // tangents can be told
+    CHECK(side.norm() <= 8);
+  }
+  for (const double share : {0.1, 0.5})  // of a wall that is mostly beside the source
+    CHECK(baker.bake(rectangles({{0, 0, kEdge / share, kEdge}}, 0), {}).facts.unseen < 0.01);
 }
 
 TEST_CASE("what nobody saw of a wall has the wall's mean beyond half a metre, and no smear") {
