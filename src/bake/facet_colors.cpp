@@ -42,9 +42,8 @@ Sum look_at(const Mesh& mesh, const Face& f, const Outlook& outlook) {
 std::vector<Rgb> colors_of_facets(const PolygonMesh& mesh, const Outlook& outlook) {
   const Mesh plain = mesh.mesh();
   std::vector<Sum> of_triangle(mesh.triangles.size());
-  parallel_for(of_triangle.size(), [&](std::size_t t) {
-    of_triangle[t] = look_at(plain, mesh.triangles[t], outlook);
-  });
+  parallel_for(of_triangle.size(),
+               [&](std::size_t t) { of_triangle[t] = look_at(plain, mesh.triangles[t], outlook); });
   std::vector<Sum> sums(mesh.facets.size(), Sum::Zero());
   Sum all = Sum::Zero();
   for (std::size_t t = 0; t < of_triangle.size(); ++t) {
