@@ -164,7 +164,7 @@ class Painter {
         c.at[k] = place(chart, t, k);
         least = least.cwiseMin(c.at[k]), most = most.cwiseMax(c.at[k]);
       }
-      if (cross(c.at[1] - c.at[0], c.at[2] - c.at[0]) < 0) std::swap(c.at[1], c.at[2]);
+      c.orient();
       if (most.x() < w.x - kBorder || most.y() < w.y - kBorder ||
           least.x() > w.x + w.width + kBorder || least.y() > w.y + w.height + kBorder)
         continue;

@@ -68,8 +68,9 @@ class Baker {
   /// smallest rectangle and drawn at one scale, without distortion. A texel shows what the nearest
   /// surface along the facet's normal shows whose normal agrees, else the nearest point; the mean
   /// of several samples, in linear light, of the source's mip level that fits. What is left is
-  /// filled from its neighbours, farther than half a metre from them with the facet's mean; a facet
-  /// of which nothing is seen with the mean of the building's walls or of its other facets.
+  /// filled from its neighbours, farther than half a metre from them with the facet's mean. A facet
+  /// of which nothing is seen has the mean of the building's walls or of its other facets, and a
+  /// single block of the atlas.
   /// `mesh` is in the source's coordinates, its vertices shared between facets. Deterministic, runs
   /// in parallel. Throws Error{kStage} where `largest` is too small for the number of charts.
   BakedTexture bake(const PolygonMesh& mesh, const BakeOptions& options) const;

@@ -16,7 +16,7 @@ std::vector<Corners> triangles_of(const PolygonMesh& mesh, const Chart& chart) {
   for (const int t : chart.triangles) {
     Corners c;
     for (int k = 0; k < 3; ++k) c.at[k] = chart.flat(mesh.vertices[mesh.triangles[t][k]]);
-    if (cross(c.at[1] - c.at[0], c.at[2] - c.at[0]) < 0) std::swap(c.at[1], c.at[2]);
+    c.orient();
     out.push_back(c);
   }
   return out;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/flat.h"
 #include "core/geometry.h"
 #include "fill.h"
 #include "parameters.h"
@@ -14,6 +15,10 @@ namespace colod::bake {
 struct Corners {
   std::array<Vec2, 3> at;
 
+  /// Makes it counter-clockwise.
+  void orient() {
+    if (cross(at[1] - at[0], at[2] - at[0]) < 0) std::swap(at[1], at[2]);
+  }
   bool holds(const Vec2& q) const;
   Vec2 nearest(const Vec2& q) const;
 };
