@@ -80,8 +80,6 @@ void mix_ink(const std::vector<std::uint8_t>& ink, bool is_inverted, Raster& ras
     }
 }
 
-constexpr int kFullColours = 45;  // the lowest quality whose colours have the full resolution
-
 struct Writer {
   jpeg_compress_struct info;
   Failure failure;
@@ -100,10 +98,8 @@ bool write_rows(Writer& w, const Raster& raster, int quality) {
   jpeg_set_defaults(&w.info);
   jpeg_set_quality(&w.info, quality, TRUE);
   w.info.optimize_coding = TRUE;
-  // Neighbours in an atlas are other facets: colours at half the resolution may run over, which is
-  // less than what low quality does to them.
-  const int colours_share = quality < kFullColours ? 2 : 1;
-  w.info.comp_info[0].h_samp_factor = w.info.comp_info[0].v_samp_factor = colours_share;
+  // Neighbours in an atlas are other facets: colours at half the resolution would run over.
+  w.info.comp_info[0].h_samp_factor = w.info.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&w.info, TRUE);
   while (w.info.next_scanline < w.info.image_height) {
     JSAMPROW row = const_cast<std::uint8_t*>(raster.at(0, static_cast<int>(w.info.next_scanline)));

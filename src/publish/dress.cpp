@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastReach = 0.25;  // metres: a source's own noise, and windows' reveals
 constexpr double kDense = 0.25;  // metres from point to point: beyond it no window shows, and what
                                  // is baked is the scatter of single points
-constexpr int kLeastQuality = 25, kQualityStep = 10;
+constexpr int kLeastQuality = 45, kQualityStep = 10;
 constexpr double kMostReach = 4;  // metres: a larger part that a layer gave away is not its wall
 
 /// How far from a layer what it stands for may lie.

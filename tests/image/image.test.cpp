@@ -108,22 +108,6 @@ TEST_CASE("images come back from each format, equal bytes for equal pixels") {
   }
 }
 
-TEST_CASE(
-    "a JPEG of low quality gives up the resolution of colours, and keeps blocks of them apart") {
-  Raster raster(64, 64);  // two charts with gutters of two texels each, at a multiple of four
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const Rgb rgb = x < 28 ? Rgb{200, 60, 40} : Rgb{30, 70, 190};
-      std::copy(rgb.begin(), rgb.end(), raster.at(x, y));
-    }
-  const std::string fine = encode_image(raster, ImageFormat::kJpeg, 45);
-  const std::string coarse = encode_image(raster, ImageFormat::kJpeg, 25);
-  CHECK(coarse.size() < fine.size());
-  const Raster back = decode_image(coarse, kRoom).raster;
-  for (const int x : {10, 25, 30, 50})
-    for (int c = 0; c < 3; ++c) CHECK(std::abs(back.at(x, 20)[c] - raster.at(x, 20)[c]) <= 12);
-}
-
 TEST_CASE("grey, progressive and CMYK JPEGs, and grey, palette and 16 bit PNGs are read") {
   const std::vector<std::uint8_t> grey(32 * 32, 120);
   CHECK(decode_image(jpeg(32, 32, 1, JCS_GRAYSCALE, false, grey), kRoom).raster.at(5, 5)[2] == 120);
