@@ -22,6 +22,7 @@ scene.add(new HemisphereLight('#eaf3ff', '#8f8a80', 1.7), sun);
 let radius = 100, corners = [], targetSse = 16, selected = null, pressed = null;
 let bytes = 0, frames = 0, since = performance.now();  // counters
 let next = 0, calm = 0;  // the frame that is asked for; frames in which nothing has changed
+let isBegun = false;  // the first tile has come
 const kCalm = 3, kMargin = 1.08;
 
 const tiles = openTileset('out/tileset.json', camera, renderer, (box, extras) => {
@@ -40,6 +41,7 @@ for (const event of ['needs-update', 'needs-render', 'tile-visibility-change']) 
 controls.addEventListener('change', wake);
 tiles.addEventListener('load-model', (tile) => {
   dress(tile.scene);
+  isBegun = true;
   if (isTextured(tile.scene)) offerTextures();
   paint(tile.scene, settings.colour.value, selected);
 });
@@ -200,10 +202,10 @@ function setState(state) {
   if (state !== 'failed') $('state').textContent = state === 'loading' ? 'loading …' : '';
 }
 
-/** `ready` when nothing was left to load for some frames. */
+/** `ready` when something has come and nothing was left to load for some frames. */
 function watch() {
   if (document.body.dataset.state === 'failed') ++calm;
-  else if (!tiles.root || tiles.isLoading) setState('loading');
+  else if (!tiles.root || !isBegun || tiles.isLoading) setState('loading');
   else if (++calm === kCalm) {
     countEverything();
     setState('ready');
