@@ -100,6 +100,7 @@ bool is_own_output(const fs::path& folder) {
 struct Folder {
   std::vector<std::string> files;    // to be read
   std::vector<std::string> foreign;  // in formats that are not
+  std::vector<std::string> own;      // subfolders that colod wrote, which are not entered
   int deeper = 0;                    // files that could be read in subfolders that are not entered
   bool has_more = false;             // not all subfolders were looked through
 };
@@ -115,7 +116,7 @@ void sort_in(const fs::path& path, bool is_entered, Folder& folder) {
 }
 
 /// Links to folders are not followed, so that none is entered twice; hidden folders and own output
-/// are not entered.
+/// are not entered, the latter with a word where others are.
 Folder look_through(const std::string& path, bool is_recursive) {
   Folder folder;
   std::error_code error;
@@ -125,8 +126,11 @@ Folder look_through(const std::string& path, bool is_recursive) {
     std::error_code unknown;  // such as a link that leads to itself: reading it says so
     if (!at->is_directory(unknown)) {
       sort_in(at->path(), is_recursive || at.depth() == 0, folder);
-    } else if (at->path().filename().string().starts_with('.') || is_own_output(at->path())) {
+    } else if (at->path().filename().string().starts_with('.')) {
       at.disable_recursion_pending();
+    } else if (is_own_output(at->path())) {
+      at.disable_recursion_pending();
+      if (is_recursive) folder.own.push_back(at->path().string());
     }
     if (at.depth() > 0 && !is_recursive && ++seen > kMostEntries) {
       folder.has_more = true;
@@ -136,6 +140,7 @@ Folder look_through(const std::string& path, bool is_recursive) {
   if (error) throw Error(Stage::kInput, path, error.message());
   std::sort(folder.files.begin(), folder.files.end());
   std::sort(folder.foreign.begin(), folder.foreign.end());
+  std::sort(folder.own.begin(), folder.own.end());
   return folder;
 }
 
@@ -147,14 +152,18 @@ std::string said_of_deeper(const Folder& folder) {
          " in subfolders: --recursive reads them, too";
 }
 
+[[noreturn]] void refuse_own_output(const std::string& input) {
+  throw Error(Stage::kInput, input,
+              "the folder holds what colod itself wrote, several levels of one building: name the "
+              "sources, or single files of it");
+}
+
 void add_folder(const std::string& input, bool is_recursive, InputList& list) {
-  if (is_part_of_output(input))
-    throw Error(Stage::kInput, input,
-                "the folder holds what colod itself wrote, several levels of one building: name "
-                "the sources, or single files of it");
+  if (is_part_of_output(input)) refuse_own_output(input);
   const Folder folder = look_through(input, is_recursive);
   const std::string deeper = said_of_deeper(folder);
   if (folder.files.empty()) {
+    if (is_own_output(input)) refuse_own_output(input);
     std::string message =
         "the folder holds no file that can be read (obj, ply, off, stl, gltf, "
         "glb, b3dm, xyz, pwn, pts, asc, csv, txt)";
@@ -164,6 +173,8 @@ void add_folder(const std::string& input, bool is_recursive, InputList& list) {
     throw Error(Stage::kInput, input, message + (deeper.empty() ? "" : "; " + deeper));
   }
   if (!deeper.empty()) list.warnings.push_back(input + ": " + deeper);
+  for (const std::string& own : folder.own)
+    list.warnings.push_back(own + ": what colod itself wrote, not read again");
   if (!folder.foreign.empty())
     list.warnings.push_back(
         folder.foreign[0] + ": " + foreign_advice(folder.foreign[0]) +

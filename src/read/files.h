@@ -25,9 +25,9 @@ struct InputList {
 };
 
 /// The files of all INPUTs. Of a folder those that can be read, sorted by name, with `is_recursive`
-/// also of its subfolders; what colod itself wrote, `._` files of macOS and texts that are no point
-/// table are passed over. Throws Error{kInput} when an INPUT does not exist or a folder holds
-/// nothing to read.
+/// also of its subfolders; what colod itself wrote, which is named, `._` files of macOS and texts
+/// that are no point table are passed over. Throws Error{kInput} when an INPUT does not exist or a
+/// folder holds nothing to read or what colod wrote.
 InputList list_files(const std::vector<std::string>& inputs, bool is_recursive);
 
 /// The first bytes of a regular file, fewer where it ends; empty for anything else.
