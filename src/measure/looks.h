@@ -56,6 +56,8 @@ LookVerdict judge_looks(const Looks& looks);
 /// walls stand over a terrace), the next 0.16 and the median 0.001; two scraps of a tile that a
 /// beam joins have 0.23, a scrap of a flat roof 2.4.
 constexpr double kMostRagged = 0.2;
+/// m²: with fewer walls it is a roof alone, which is as thin as it is low.
+constexpr double kLeastWall = 0.1;
 
 /// What is known of a source before any layer is looked at.
 struct SourceLooks {

@@ -78,11 +78,10 @@ std::string describe_ragged(const Looks& looks) {
   char text[320];
   std::snprintf(
       text, sizeof text,
-      "%.3g m2 of its finest layer stand where the source shows nothing or are thin sheets, %s as "
-      "much as it has walls: is this a building, and whole? --scene scene takes a file for a "
-      "place, "
+      "%.3g m2 of its finest layer stand where the source shows nothing or are thin sheets, beside "
+      "%.3g m2 of walls: is this a building, and whole? --scene scene takes a file for a place, "
       "where --footprints tells what buildings are",
-      looks.ragged, percent(looks.ragged / std::max(1e-9, looks.wall_area)).c_str());
+      looks.ragged, looks.wall_area);
   return text;
 }
 

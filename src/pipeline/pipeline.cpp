@@ -234,7 +234,7 @@ bool is_failure(StandIn reason) {
 bool Building::is_ragged() const {
   if (layers.empty() || !layers.back().failure.empty()) return false;
   const Looks& looks = layers.back().looks;
-  return looks.ragged > kMostRagged * looks.wall_area;
+  return looks.wall_area > kLeastWall && looks.ragged > kMostRagged * looks.wall_area;
 }
 
 bool Building::has_lost_shape() const {

@@ -166,9 +166,17 @@ TEST_CASE("a finest layer with little of the source behind it counts as lost, a 
   finest.ragged = 1.1 * kMostRagged * finest.wall_area;
   CHECK(b.has_lost());
   REQUIRE(loss_warnings(b).size() == 1);
-  CHECK_THAT(loss_warnings(b)[0], Catch::Contains("22 % as much as it has walls"));
+  CHECK_THAT(loss_warnings(b)[0], Catch::Contains("m2 of walls: is this a building, and whole?"));
   b.layers.back().failure = "none";  // which is told of by itself
   CHECK(loss_warnings(b).empty());
+}
+
+TEST_CASE("a roof alone is as thin as it is low, and nothing is lost of it") {
+  for (const double w : {8.0, 20.0, 60.0}) {
+    INFO(w << " m wide");
+    CHECK(!build(hipped_roof(w, 0.7 * w, w / 3)).buildings[0].has_lost());
+    CHECK(!build(gable_roof(w, 0.7 * w, w / 3)).buildings[0].has_lost());
+  }
 }
 
 TEST_CASE(
