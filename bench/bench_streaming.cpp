@@ -5,9 +5,11 @@
 //   bench_streaming drive TILESET --paths PATHS.json [...]     the model, stop by stop, as JSON
 //   bench_streaming judge TILESET --run RUN.json [...]         what a client said, likewise
 //   bench_streaming compare A.png B.png                        two screenshots of clients
+//   bench_streaming look A.png B.png                           two in colours, before a blue sky
 //
-// bench/streaming runs all of it and writes a table.
+// bench/streaming runs the first four and writes a table, bench/places runs the last.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -258,10 +260,31 @@ int judge(const Settings& s) {
   return 0;
 }
 
-int compare(const Settings& s) {
-  const GreyPicture a = read_screenshot(s.first), b = read_screenshot(s.second);
+template <typename Picture>
+void check_sizes(const Settings& s, const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height)
     throw Error(Stage::kInput, s.second, "not as large as " + s.first);
+}
+
+/// Means over the pixels that either picture covers.
+int look(const Settings& s) {
+  const ColorPicture a = read_colors(s.first), b = read_colors(s.second);
+  check_sizes(s, a, b);
+  const PictureErrors e = compare_colors(a, b);
+  const double n = std::max<double>(1, static_cast<double>(e.pixels));
+  const Json out = {{"pixels", e.pixels},
+                    {"only_a", e.only_a},
+                    {"only_b", e.only_b},
+                    {"psnr", e.squares > 0 ? Json(-10 * std::log10(e.squares / n)) : Json()},
+                    {"ssim", e.ssim / n},
+                    {"flip", e.flip / n}};
+  std::printf("%s\n", out.dump().c_str());
+  return 0;
+}
+
+int compare(const Settings& s) {
+  const GreyPicture a = read_screenshot(s.first), b = read_screenshot(s.second);
+  check_sizes(s, a, b);
   std::printf("%s\n", difference_json(compare_pictures(a, b)).dump().c_str());
   return 0;
 }
@@ -294,13 +317,21 @@ int main(int argc, char** argv) {
   CLI::App* client = with_tileset(command("judge", "what a client drew"));
   client->add_option("--run", s.run, "JSON of the client")->required()->check(CLI::ExistingFile);
   client->add_option("--pictures", s.folder, "where its screenshots are");
-  CLI::App* pair = command("compare", "two screenshots of clients");
-  pair->add_option("a", s.first)->required()->check(CLI::ExistingFile);
-  pair->add_option("b", s.second)->required()->check(CLI::ExistingFile);
+  const auto with_pair = [&](CLI::App* sub) {
+    sub->add_option("a", s.first)->required()->check(CLI::ExistingFile);
+    sub->add_option("b", s.second)->required()->check(CLI::ExistingFile);
+    return sub;
+  };
+  with_pair(command("compare", "two screenshots of clients"));
+  CLI::App* colors = with_pair(command("look", "two in colours: PSNR, SSIM, FLIP"));
   CLI11_PARSE(app, argc, argv);
   limit_threads(s.threads);
   try {
-    return *paths ? write_paths(s) : *model ? drive(s) : *client ? judge(s) : compare(s);
+    return *paths    ? write_paths(s)
+           : *model  ? drive(s)
+           : *client ? judge(s)
+           : *colors ? look(s)
+                     : compare(s);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "bench_streaming: %s\n", e.what());
     return 1;

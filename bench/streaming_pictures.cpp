@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/appearance.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -14,9 +15,23 @@ namespace colod::bench {
 namespace {
 
 constexpr double kSky = 230.0 / 255, kAmbient = 0.4, kDiffuse = 0.45;
-constexpr int kMargin = 40;       // pixels: outlines are followed for 32
-constexpr int kAround = 4;        // pixels: a coarse level stands out of the finest one's box
-constexpr double kTooNear = 0.1;  // metres ahead: a box from here on may fill the view
+constexpr std::uint8_t kSkyLevel = 16;  // of 255: a screenshot's pure blue is no nearer to others
+constexpr int kMargin = 40;             // pixels: outlines are followed for 32
+constexpr int kAround = 4;              // pixels: a coarse level stands out of the finest one's box
+constexpr double kTooNear = 0.1;        // metres ahead: a box from here on may fill the view
+
+Image read_rgb(const std::string& path) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&header, path.c_str()))
+    throw Error(Stage::kInput, path, header.message);
+  header.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(header));
+  if (!png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr))
+    throw Error(Stage::kInput, path, header.message);
+  return image;
+}
 
 Mesh soup_of(const Tileset& tileset, const std::vector<int>& tiles) {
   Mesh out;
@@ -148,21 +163,27 @@ GreyPicture draw(const Scenery& scenery, const Camera& camera, const Window& w,
 }
 
 GreyPicture read_screenshot(const std::string& path) {
-  png_image header{};
-  header.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&header, path.c_str()))
-    throw Error(Stage::kInput, path, header.message);
-  header.format = PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(header));
-  if (!png_image_finish_read(&header, nullptr, rgb.data(), 0, nullptr))
-    throw Error(Stage::kInput, path, header.message);
-  GreyPicture out{static_cast<int>(header.width), static_cast<int>(header.height), {}, {}};
-  for (std::size_t i = 0; i < rgb.size(); i += 3) {
+  const Image image = read_rgb(path);
+  GreyPicture out{image.width, image.height, {}, {}};
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
     // Buildings are grey, so that red is theirs alone and what blue has more of is the sky's.
-    const float red = static_cast<float>(rgb[i]) / 255, blue = static_cast<float>(rgb[i + 2]) / 255;
+    const float red = static_cast<float>(image.rgb[i]) / 255;
+    const float blue = static_cast<float>(image.rgb[i + 2]) / 255;
     const float sky = std::clamp(blue - red, 0.0f, 1.0f);
     out.coverage.push_back(1 - sky);
     out.luminance.push_back(red + sky * static_cast<float>(kSky));
+  }
+  return out;
+}
+
+ColorPicture read_colors(const std::string& path) {
+  const Image image = read_rgb(path);
+  ColorPicture out{image.width, image.height, {}, {}};
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    const std::uint8_t* rgb = &image.rgb[i];
+    const bool is_sky = rgb[0] < kSkyLevel && rgb[1] < kSkyLevel && rgb[2] > 255 - kSkyLevel;
+    out.coverage.push_back(is_sky ? 0.0f : 1.0f);
+    out.linear.emplace_back(to_linear(rgb[0]), to_linear(rgb[1]), to_linear(rgb[2]));
   }
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "core/rays.h"
 #include "measure/picture_difference.h"
+#include "measure/picture_errors.h"
 #include "picture/picture.h"
 #include "streaming_tileset.h"
 
@@ -55,6 +56,9 @@ GreyPicture draw(const Scenery& scenery, const Camera& camera, const Window& win
 
 /// A client's screenshot: grey buildings before pure blue, as the pages of streaming_clients draw.
 GreyPicture read_screenshot(const std::string& path);
+
+/// A client's screenshot in its colours; what is nearly pure blue is the sky.
+ColorPicture read_colors(const std::string& path);
 
 /// Both pictures and where they differ, side by side.
 Image side_by_side(const GreyPicture& a, const GreyPicture& b);

@@ -1,6 +1,7 @@
 // Based on: own work.
-// Differs: a source's own coarse tiles are taken as they are where it has them: they were made from
-// the photographs, and what is cut out of them has the same borders on all levels.
+// Differs: a source's own coarse tiles are taken where it has them: they were made from the
+// photographs, and what is cut out of them has the same borders on all levels. Their images are
+// brought down to the pixels that they are seen at.
 #include "context.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "scene/closing.h"
+#include "scene/coarse_images.h"
 #include "scene/context_chain.h"
 #include "scene/own_images.h"
 #include "scene/skirts.h"
@@ -55,6 +57,17 @@ std::vector<char> too_fine(const SceneTiles& tiles) {
     is_below[i] = is_below[above] || (is_end[above] && !nodes[above].is_added);
   }
   return is_below;
+}
+
+/// Per node: whether finer ones are asked for and take its place.
+std::vector<char> replaced(const std::vector<TileNode>& nodes,
+                           const std::vector<char>& is_left_out) {
+  std::vector<char> out(nodes.size(), 0);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const auto above = static_cast<std::size_t>(nodes[i].parent);
+    if (!is_left_out[i] && !nodes[above].is_added) out[above] = 1;
+  }
+  return out;
 }
 
 /// Whether most of what is finest has something coarser that stands for it from afar.
@@ -109,10 +122,13 @@ class Nodes {
  public:
   explicit Nodes(const SceneOutput& output) : output_(output) {}
 
-  /// The scene's own tiles on all their levels.
+  /// The scene's own tiles on all their levels. One that finer ones replace is seen while its error
+  /// is no more than the pixels asked for: it needs no texel below that error's share of a pixel.
   void add_tree(const Place& place, const ReadOptions& options) {
     const std::vector<TileNode>& tree = place->scene->tiles.tree().nodes;
     const std::vector<char> is_left_out = too_fine(place->scene->tiles);
+    const std::vector<char> is_replaced = replaced(tree, is_left_out);
+    const auto images = std::make_shared<const CoarseImages>(kChainImages);
     std::vector<int> number;
     for (std::size_t i = 0; i < tree.size(); ++i) {
       number.push_back(static_cast<int>(nodes_.size()));
@@ -120,7 +136,12 @@ class Nodes {
       const int above = tree[i].parent;
       nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
                         tree[i].geometric_error, tree[i].is_added});
-      read_.push_back([place, options, i] { return read_node(*place, i, options); });
+      const double texel = is_replaced[i] ? tree[i].geometric_error / output_.target_sse : 0;
+      read_.push_back([place, options, images, texel, i] {
+        Source shown = read_node(*place, i, options);
+        if (texel > 0) images->give(shown, texel);
+        return shown;
+      });
     }
   }
 

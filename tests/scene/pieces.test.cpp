@@ -7,6 +7,7 @@
 #include <set>
 
 #include "image/look_sampler.h"
+#include "scene/coarse_images.h"
 #include "scene/context_chain.h"
 #include "scene/own_images.h"
 #include "scene/tiles.h"
@@ -149,6 +150,57 @@ TEST_CASE("an image that is mostly worn, repeats or cannot be read stays") {
     own.give(*s);
     CHECK(s->look.images[0] == before.look.images[0]);
     CHECK(s->look.uvs == before.look.uvs);
+  }
+}
+
+TEST_CASE("a coarse tile wears one image with texels as large as pixels, of what it wears alone") {
+  const TemporaryFolder folder;
+  const std::string image = write_image(folder);
+  const int parts = GENERATE(2, 4, 8);
+  const double larger = GENERATE(1.0, 3.0, 6.5);  // a texel than those of the source
+  Source before = checkered(image, parts, 0.4f);
+  Raster loud = decode_image(read_image(before.look.images[0], 1 << 24), 1 << 24).raster;
+  const double side = 256 * 0.4 / parts;  // pixels of a part
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const double u = std::fmod(x, 256.0 / parts), v = std::fmod(y, 256.0 / parts);
+      const bool is_worn = (x * parts / 256 + y * parts / 256) % 2 == 0 && u < side && v < side;
+      if (!is_worn) loud.at(x, y)[2] = 255;
+    }
+  std::ofstream(image, std::ios::binary) << encode_image(loud, ImageFormat::kPng, 90);
+  Source after = before;
+  const CoarseImages coarse(std::size_t{1} << 26);
+  coarse.give(after, larger / side);
+  const std::set<int> worn(after.look.face_material.begin(), after.look.face_material.end());
+  REQUIRE(worn.size() == 1);
+  const Material& material = after.look.materials[static_cast<std::size_t>(*worn.begin())];
+  CHECK(material.image == 1);
+  const ImageCache cache(std::size_t{1} << 26);
+  const ImageCache::Facts facts = cache.facts(after.look.images[1]);
+  const double chart = side / larger + 2 * 2 + 2 + 3;  // with margins, rim, and up to fours
+  CHECK(facts.width * facts.height < 1.5 * parts * parts / 2 * chart * chart + 64);
+  for (int f = 0; f < static_cast<int>(before.mesh.faces.size()); ++f) {
+    const Light a = seen(before, f), b = seen(after, f);
+    INFO(f << ": " << a.transpose() << " and " << b.transpose());
+    CHECK((a - b).matrix().norm() < 0.06);
+  }
+}
+
+TEST_CASE("a coarse tile whose images are no finer than pixels, tinted or lost keeps them") {
+  const TemporaryFolder folder;
+  const std::string image = write_image(folder);
+  const CoarseImages coarse(std::size_t{1} << 26);
+  Source fitting = checkered(image, 1, 1), lost = checkered("nowhere.png", 4, 0.4f),
+         repeated = checkered(image, 4, 0.4f), tinted = repeated, clear = repeated;
+  for (Vec2f& uv : repeated.look.uvs[0]) uv += Vec2f(2, 0);
+  tinted.look.materials[0].color = {1, 0.5f, 0.5f};
+  clear.look.materials[0].cutoff = 0.5f;
+  for (Source* s : {&fitting, &lost, &repeated, &tinted, &clear}) {
+    const Source before = *s;
+    coarse.give(*s, s == &fitting ? 1.0 / 256 : 0.1);
+    CHECK(s->look.images == before.look.images);
+    CHECK(s->look.uvs == before.look.uvs);
+    CHECK(s->look.face_material == before.look.face_material);
   }
 }
 
