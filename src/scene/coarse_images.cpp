@@ -13,18 +13,23 @@ namespace colod {
 
 namespace {
 
-constexpr double kWorth = 0.75;  // of the texels: of what is more they stay
-constexpr int kRim = 1;          // texels around a chart
+constexpr double kWorth = 0.75;     // of the texels: of what is more they stay
+constexpr int kRim = 1;             // texels around a chart
 constexpr double kTouching = 0.45;  // pixels between a triangle and the middle of one that it wears
 constexpr double kLeastPixels = 1e-6;
 
 /// An image that moves: its charts, and as how many texels.
 struct Moving {
-  std::shared_ptr<const Pyramid> pyramid;
+  ImagePlace place;
+  int width = 0, height = 0;  ///< pixels
   Worn worn;
   std::vector<Chart> sizes;  ///< of each chart, without the rim; at (0, 0)
+};
 
-  const Raster& raster() const { return pyramid->levels[0]; }
+/// Where the charts of all images go, image by image.
+struct Packing {
+  std::vector<PackedRect> rects;
+  std::array<int, 2> size = {0, 0};  ///< pixels; 0: nothing moves
 };
 
 std::array<Vec2f, 3> in_pixels(const std::array<Vec2f, 3>& uvs, int width, int height) {
@@ -39,11 +44,11 @@ double cross_of(const Vec2f& a, const Vec2f& b) {
 }
 
 /// Per chart, in metres.
-std::vector<double> own_texels(const Source& source, const Worn& worn, const Raster& raster) {
-  std::vector<double> area(worn.charts.size(), 0), pixels(area);
-  for (std::size_t i = 0; i < worn.faces.size(); ++i) {
-    const std::size_t f = worn.faces[i], c = static_cast<std::size_t>(worn.chart[i]);
-    const auto p = in_pixels(source.look.uvs[f], raster.width, raster.height);
+std::vector<double> own_texels(const Source& source, const Moving& m) {
+  std::vector<double> area(m.worn.charts.size(), 0), pixels(area);
+  for (std::size_t i = 0; i < m.worn.faces.size(); ++i) {
+    const std::size_t f = m.worn.faces[i], c = static_cast<std::size_t>(m.worn.chart[i]);
+    const auto p = in_pixels(source.look.uvs[f], m.width, m.height);
     pixels[c] += std::abs(cross_of(p[1] - p[0], p[2] - p[0])) / 2;
     area[c] += face_area(source.mesh, source.mesh.faces[f]);
   }
@@ -71,12 +76,10 @@ void mark(std::array<Vec2f, 3> p, int width, int height, std::vector<char>& is_w
 }
 
 /// Images that are seen through stay, so that what is wholly transparent lies beside the charts.
-std::vector<char> worn_pixels(const Source& source, const Moving& m) {
-  const Raster& raster = m.raster();
+std::vector<char> worn_pixels(const Source& source, const Moving& m, const Raster& raster) {
   std::vector<char> is_worn(static_cast<std::size_t>(raster.width) * raster.height, 0);
   for (const std::size_t f : m.worn.faces)
-    mark(in_pixels(source.look.uvs[f], raster.width, raster.height), raster.width, raster.height,
-         is_worn);
+    mark(in_pixels(source.look.uvs[f], m.width, m.height), m.width, m.height, is_worn);
   for (std::size_t i = 0; i < raster.alpha.size(); ++i)
     if (raster.alpha[i] == 0) is_worn[i] = 0;
   return is_worn;
@@ -150,10 +153,24 @@ std::vector<char> plain_images(const Appearance& look) {
   return is_plain;
 }
 
+/// `texels`: of the images as they are.
+Packing pack(const std::vector<Moving>& moving, double texels) {
+  Packing out;
+  double own = 0;
+  for (const Moving& m : moving)
+    for (const Chart& c : m.sizes) {
+      out.rects.push_back(rect_of(c.width + 2 * kRim, c.height + 2 * kRim));
+      own += static_cast<double>(out.rects.back().width) * out.rects.back().height;
+    }
+  if (out.rects.size() > kMostCharts || own > kWorth * texels) return {};
+  out.size = pack_rects(out.rects, kLargestOwn);
+  if (static_cast<double>(out.size[0]) * out.size[1] > kWorth * texels) return {};
+  return out;
+}
+
 /// The faces wear their charts where these have moved to, by a material that is still to come.
-void wear(const Moving& m, const PackedRect* rects, const std::array<int, 2>& packed,
-          Source& source) {
-  const Vec2f whole(static_cast<float>(packed[0]), static_cast<float>(packed[1]));
+void wear(const Moving& m, const PackedRect* rects, const std::array<int, 2>& all, Source& source) {
+  const Vec2f whole(static_cast<float>(all[0]), static_cast<float>(all[1]));
   for (std::size_t i = 0; i < m.worn.faces.size(); ++i) {
     const std::size_t f = m.worn.faces[i], c = static_cast<std::size_t>(m.worn.chart[i]);
     const Chart &chart = m.worn.charts[c], &size = m.sizes[c];
@@ -161,10 +178,9 @@ void wear(const Moving& m, const PackedRect* rects, const std::array<int, 2>& pa
     const Vec2f to(static_cast<float>(rects[c].x + kRim), static_cast<float>(rects[c].y + kRim));
     const Vec2f scale(static_cast<float>(size.width) / static_cast<float>(chart.width),
                       static_cast<float>(size.height) / static_cast<float>(chart.height));
-    const auto p = in_pixels(source.look.uvs[f], m.raster().width, m.raster().height);
+    const auto p = in_pixels(source.look.uvs[f], m.width, m.height);
     for (std::size_t k = 0; k < 3; ++k)
-      source.look.uvs[f][k] =
-          (Vec2f((p[k] - from).cwiseProduct(scale)) + to).cwiseQuotient(whole);
+      source.look.uvs[f][k] = (Vec2f((p[k] - from).cwiseProduct(scale)) + to).cwiseQuotient(whole);
     source.look.face_material[f] = static_cast<int>(source.look.materials.size());
   }
 }
@@ -176,54 +192,62 @@ struct CoarseImages::Impl {
   ScratchFile file;
 
   explicit Impl(std::size_t memory) : images(memory) {}
-  std::vector<Moving> moving(const Source& source, double texel, double& texels) const;
+  std::vector<Moving> moving(const Source& source, double texel) const;
+  Raster draw_all(const Source& source, const std::vector<Moving>& moving,
+                  const Packing& packing) const;
 };
 
 CoarseImages::CoarseImages(std::size_t memory) : impl_(std::make_unique<Impl>(memory)) {}
 CoarseImages::~CoarseImages() = default;
 
-/// `texels`: of these images as they were.
-std::vector<Moving> CoarseImages::Impl::moving(const Source& source, double texel,
-                                               double& texels) const {
+std::vector<Moving> CoarseImages::Impl::moving(const Source& source, double texel) const {
   std::vector<Moving> out;
   std::vector<Worn> worn = worn_by_image(source);
   const std::vector<char> is_plain = plain_images(source.look);
   for (std::size_t i = 0; i < worn.size(); ++i) {
     if (worn[i].faces.empty() || worn[i].is_repeated || !is_plain[i]) continue;
-    const ImageCache::Entry entry = images.get(source.look.images[i]);
-    if (!entry.pyramid || entry.is_lost) continue;
-    Moving m{entry.pyramid, std::move(worn[i]), {}};
-    const Raster& raster = m.raster();
-    find_charts(source, raster.width, raster.height, m.worn);
-    const std::vector<double> own = own_texels(source, m.worn, raster);
+    const ImageCache::Facts facts = images.facts(source.look.images[i]);
+    if (facts.width == 0 || facts.is_lost) continue;
+    Moving m{source.look.images[i], facts.width, facts.height, std::move(worn[i]), {}};
+    find_charts(source, m.width, m.height, m.worn);
+    const std::vector<double> own = own_texels(source, m);
     for (std::size_t c = 0; c < own.size(); ++c)
       m.sizes.push_back(size_of(m.worn.charts[c], std::min(1.0, own[c] / texel)));
-    texels += static_cast<double>(raster.width) * raster.height;
     out.push_back(std::move(m));
   }
   return out;
 }
 
-void CoarseImages::give(Source& source, double texel) const {
-  double texels = 0;
-  const std::vector<Moving> moving = impl_->moving(source, texel, texels);
-  std::vector<PackedRect> rects;
-  for (const Moving& m : moving)
-    for (const Chart& c : m.sizes) rects.push_back(rect_of(c.width + 2 * kRim, c.height + 2 * kRim));
-  double own = 0;
-  for (const PackedRect& r : rects) own += static_cast<double>(r.width) * r.height;
-  if (rects.empty() || rects.size() > kMostCharts || own > kWorth * texels) return;
-  const std::array<int, 2> packed = pack_rects(rects, kLargestOwn);
-  if (packed[0] == 0 || static_cast<double>(packed[0]) * packed[1] > kWorth * texels) return;
-  Raster raster(packed[0], packed[1]);
+/// Images are decoded one after the other: a tile may have many.
+Raster CoarseImages::Impl::draw_all(const Source& source, const std::vector<Moving>& moving,
+                                    const Packing& packing) const {
+  Raster out(packing.size[0], packing.size[1]);
   std::size_t first = 0;  // of an image's charts
   for (const Moving& m : moving) {
-    const std::vector<char> is_worn = worn_pixels(source, m);
+    const ImageCache::Entry entry = images.get(m.place);
+    if (!entry.pyramid) return {};  // it was there a moment ago
+    const Raster& raster = entry.pyramid->levels[0];
+    const std::vector<char> is_worn = worn_pixels(source, m, raster);
     for (std::size_t c = 0; c < m.sizes.size(); ++c) {
-      const Raster chart = resampled(m.raster(), is_worn, m.worn.charts[c], m.sizes[c]);
-      copy_chart(chart, {0, 0, chart.width, chart.height}, rects[first + c], raster);
+      const Raster chart = resampled(raster, is_worn, m.worn.charts[c], m.sizes[c]);
+      copy_chart(chart, {0, 0, chart.width, chart.height}, packing.rects[first + c], out);
     }
-    wear(m, &rects[first], packed, source);
+    first += m.sizes.size();
+  }
+  return out;
+}
+
+void CoarseImages::give(Source& source, double texel) const {
+  const std::vector<Moving> moving = impl_->moving(source, texel);
+  double texels = 0;
+  for (const Moving& m : moving) texels += static_cast<double>(m.width) * m.height;
+  const Packing packing = pack(moving, texels);
+  if (packing.size[0] == 0) return;
+  const Raster raster = impl_->draw_all(source, moving, packing);
+  if (raster.width == 0) return;
+  std::size_t first = 0;
+  for (const Moving& m : moving) {
+    wear(m, &packing.rects[first], packing.size, source);
     first += m.sizes.size();
   }
   Appearance& look = source.look;

@@ -96,17 +96,17 @@ TEST_CASE("a source's coarse tiles wear texels of a pixel, its finest its images
   folder.write("coarse.b3dm", tile_with_image(terrain_with_boxes(kSide, 4, house), kPixels));
   folder.write("fine.b3dm", tile_with_image(terrain_with_boxes(kSide, 1, house), kPixels));
   folder.write("tileset.json",
-               tileset_of(tile_of("coarse.b3dm",
-                                  R"(,"refine":"REPLACE","children":[)" + tile_of("fine.b3dm") + "]",
-                                  error)));
+               tileset_of(tile_of(
+                   "coarse.b3dm",
+                   R"(,"refine":"REPLACE","children":[)" + tile_of("fine.b3dm") + "]", error)));
   const std::string plan = folder.write(
       "plan.geojson",
       R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
       R"({"type":"Polygon","coordinates":[[[12,14],[20,14],[20,24],[12,24],[12,14]]]}}]})");
-  const Ended run = run_colod(
-      folder.path, "build " + (folder.path / "tileset.json").string() + " --footprints " + plan +
-                       " -o " + (folder.path / "out").string() +
-                       " --ns 24 --nr 24 --no-report-html --target-sse 16");
+  const Ended run =
+      run_colod(folder.path, "build " + (folder.path / "tileset.json").string() + " --footprints " +
+                                 plan + " -o " + (folder.path / "out").string() +
+                                 " --ns 24 --nr 24 --no-report-html --target-sse 16");
   INFO(run.err);
   CHECK(run.exit_code == 0);
   const fs::path context = folder.path / "out" / "tiles" / "context";
