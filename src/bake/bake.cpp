@@ -346,6 +346,29 @@ class Painter {
 
   bool is_wall(std::size_t chart) const { return std::abs(charts_[chart].normal.z()) < kUpright; }
 
+  /// What a chart that nobody saw lies against, whichever way that faces: a riser between two parts
+  /// of a roof looks like the roof. Nothing unless the source is near to half of the chart.
+  std::optional<Light> light_about(const Chart& chart) const {
+    NearestInTurn nearest = probe_.in_turn();
+    Lens lens(cache_);
+    Light sum = Light::Zero();
+    int asked = 0, found = 0;
+    for (const int t : chart.triangles)
+      for (int i = 0; i < kParts; ++i)
+        for (int j = 0; i + j < kParts; ++j) {
+          const double u = (i + 1 / 3.) / kParts, v = (j + 1 / 3.) / kParts;
+          const auto corner = [&](int k) { return mesh_.vertices[mesh_.triangles[t][k]]; };
+          const NearestPoint near =
+              nearest((1 - u - v) * corner(0) + u * corner(1) + v * corner(2), kNearest);
+          ++asked;
+          if (near.triangle < 0) continue;
+          ++found;
+          sum += sampler_.sample(near.triangle, near.point, atlas_.texel, lens);
+        }
+    if (found == 0 || 2 * found < asked) return {};
+    return Light(sum / static_cast<float>(found));
+  }
+
   /// What is far from all that is seen has its chart's mean, or the building's. What little is
   /// known of a chart is no picture of it.
   void fill(const std::vector<Tally>& of_chart, const Tally& total, Raster& image) {
@@ -359,7 +382,7 @@ class Painter {
         push_pull(image, is_known_, w, kCarried / atlas_.texel,
                   mean_of(of_chart[c], of_kind[is_wall(c)]));
       else
-        fill_evenly(image, w, of_kind[is_wall(c)]);
+        fill_evenly(image, w, light_about(charts_[c]).value_or(of_kind[is_wall(c)]));
     });
     std::vector<std::uint8_t> is_taken(is_known_.size(), 0);
     for (const PackedRect& r : atlas_.rects)

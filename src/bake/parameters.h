@@ -26,8 +26,9 @@ constexpr double kSplat = 0.75;      ///< half a square's side, of the mean dist
                                      ///< square lattice squares then meet whatever their turn
 constexpr double kLeastSeen = 0.03;  ///< of a chart's texels: fewer say nothing of the rest
 constexpr int kProbes = 24;  ///< samples across a chart that tell whether anything of it is seen,
-constexpr int kMostProbes = 96;    ///< along it at most,
-constexpr int kLeastAsked = 32;    ///< and on it at least, to tell
+constexpr int kMostProbes = 96;  ///< along it at most,
+constexpr int kLeastAsked = 32;  ///< and on it at least, to tell
+constexpr int kParts = 4;        ///< along each side of a triangle, that tell what it lies against
 constexpr double kCrease = 0.766;  ///< cosine, 40 degrees: faces that meet more sharply are two
                                    ///< surfaces, each with its own normals
 constexpr double kUpright = 0.5;   ///< upright part of a wall's normal at most: what nobody saw of

@@ -35,9 +35,9 @@ export function drawnBands(canvas) {
 
 /**
  * Resolves when `settled()` held for ten frames and half a second on end: CesiumJS waits 0.2 s after a camera's move before it asks
- * for tiles at the view's edge. Rejects after three minutes.
+ * for tiles at the view's edge. Rejects after `limit` ms.
  */
-export async function settle(settled) {
+export async function settle(settled, limit = 180000) {
   const begin = performance.now();
   for (let frames = 0, since = begin; frames < 10 || performance.now() < since + 500; ++frames) {
     await new Promise((done) => requestAnimationFrame(done));
@@ -45,7 +45,7 @@ export async function settle(settled) {
       frames = 0;
       since = performance.now();
     }
-    if (performance.now() > begin + 180000) throw new Error('not settled in time');
+    if (performance.now() > begin + limit) throw new Error('not settled in time');
   }
 }
 
