@@ -329,6 +329,28 @@ TEST_CASE(
     CHECK(baker.bake(rectangles({{0, 0, kEdge / share, kEdge}}, 0), {}).facts.unseen < 0.01);
 }
 
+TEST_CASE("a riser that nobody saw looks like what it lies against, a party wall like all walls") {
+  const Wall wall(painted(kSide, [](int x, int) {
+    return x < kSide / 2 ? Rgb{200, 100, 50} : Rgb{20, 60, 220};
+  }));
+  const Baker baker(wall.mesh, wall.look, wall.cache);
+  for (const double height : {0.05, 0.2, 0.4, 6.0}) {
+    INFO(height << " m high");
+    PolygonMesh layer = rectangles({{0, 0, kEdge, kEdge}}, 0);
+    const double x = 1, h = height / 2;  // upright on the wall, in its first half
+    for (const Vec3& p : {Vec3(x, -h, 0), Vec3(x, h, 0), Vec3(x, h, kEdge), Vec3(x, -h, kEdge)})
+      layer.vertices.push_back(p);
+    layer.facets.push_back({Vec3::UnitX(), 1, {{4, 5, 6, 7}}});
+    layer.triangles.insert(layer.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+    layer.facet_of_triangle.insert(layer.facet_of_triangle.end(), {1, 1});
+    const BakedTexture t = baker.bake(layer, {});
+    const auto seen = seen_at(t, layer, 2, Vec3(x, 0, kEdge / 2), t.image);
+    INFO(seen.transpose());
+    CHECK((height < 1 ? seen[0] > 190 : seen[0] < 160));
+    CHECK((height < 1 ? seen[2] < 60 : seen[2] > 120));
+  }
+}
+
 TEST_CASE("what nobody saw of a wall has the wall's mean beyond half a metre, and no smear") {
   // Sky blue at its foot, which a rim would smear; seen above 2 m only.
   Wall wall(painted(kSide, [](int, int y) {
