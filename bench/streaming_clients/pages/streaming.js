@@ -19,3 +19,16 @@ export function featureOf(value) {
   if (coarsest !== undefined) feature.coarsest_layer = coarsest;
   return feature;
 }
+
+/** CesiumJS: looks from `eye` to `target`, both in `frame`, which leads to the Earth; z is up in it. */
+export function placeCamera(widget, frame, { eye, target }) {
+  const turned = (v) => Cesium.Cartesian3.normalize(Cesium.Matrix4.multiplyByPointAsVector(frame, v, new Cesium.Cartesian3()), v);
+  const direction = turned(new Cesium.Cartesian3(...target.map((t, k) => t - eye[k])));
+  const right = Cesium.Cartesian3.cross(direction, turned(new Cesium.Cartesian3(0, 0, 1)), new Cesium.Cartesian3());
+  const up = Cesium.Cartesian3.cross(Cesium.Cartesian3.normalize(right, right), direction, new Cesium.Cartesian3());
+  const destination = Cesium.Matrix4.multiplyByPoint(frame, new Cesium.Cartesian3(...eye), new Cesium.Cartesian3());
+  widget.camera.setView({ destination, orientation: { direction, up } });
+  const aspect = widget.canvas.clientWidth / widget.canvas.clientHeight;  // the field of view is that of the longer side
+  widget.camera.frustum = new Cesium.PerspectiveFrustum(
+    { fov: 2 * Math.atan(Math.tan(fovy / 2) * Math.max(1, aspect)), aspectRatio: aspect, near: 0.5, far: 1e5 });
+}
