@@ -36,8 +36,10 @@ async function look(stop) {
 
 try {
   const rows = [];
-  for (const stop of readJson(stopsFile)) rows.push(await look(stop));
-  fs.writeFileSync(path.join(out, 'run.json'), `${JSON.stringify(rows, null, 1)}\n`);
+  for (const stop of readJson(stopsFile)) {
+    rows.push(await look(stop));  // minutes each, on a software renderer
+    fs.writeFileSync(path.join(out, 'run.json'), `${JSON.stringify(rows, null, 1)}\n`);
+  }
 } finally {
   await browser.close();
   server.close();
