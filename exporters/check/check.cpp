@@ -155,7 +155,9 @@ void check_numbers(Walk& walk, const Json& tile, const Place& place, const Box& 
     walk.report("error-not-falling", place.where, "not less than its parent's geometric error");
   if (is_leaf && error != 0)
     walk.report("error-leaf", place.where, "a leaf's geometric error is not 0");
-  if (!place.is_refine_known && tile.value("refine", "") != "REPLACE")
+  const std::string refine = tile.value("refine", "");
+  const bool is_added = place.depth > 0 && refine == "ADD";  // a scene's own tile, apart
+  if (!place.is_refine_known && refine != "REPLACE" && !is_added)
     walk.report("refine", place.where, "the root does not say refine REPLACE");
   if (box.is_empty() || !(box.diagonal() > 0)) walk.report("box", place.where, "an empty box");
 }

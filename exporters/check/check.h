@@ -20,7 +20,7 @@ struct Finding {
 struct GlbContent {
   struct MeshContent {
     std::vector<Vec3> positions;          ///< z up
-    std::vector<Vec3> normals;            ///< per position
+    std::vector<Vec3> normals;            ///< per position; empty: none
     std::vector<std::uint32_t> features;  ///< per position; empty: no ids
     std::vector<Face> faces;
   };

@@ -77,10 +77,14 @@ bool read_draco(Glb& glb, const Json& primitive, const std::string& place, MeshC
   for (const auto& [name, id] : attributes.items())
     if (!primitive.at("attributes").contains(name))
       glb.report("draco-ids", place, name + " is not an attribute of the primitive");
-  const auto *positions = values("POSITION", 3), *normals = values("NORMAL", 3);
-  if (!positions || !normals) return false;
+  const auto* positions = values("POSITION", 3);
+  if (!positions) return false;
   out.positions = as_points(*positions);
-  out.normals = as_points(*normals);
+  if (extension.at("attributes").contains("NORMAL")) {
+    const auto* normals = values("NORMAL", 3);
+    if (!normals) return false;
+    out.normals = as_points(*normals);
+  }
   if (extension.at("attributes").contains("_FEATURE_ID_0")) {
     const auto* ids = values("_FEATURE_ID_0", 1);
     if (!ids) return false;
@@ -102,7 +106,7 @@ bool read_plain(Glb& glb, const Json& primitive, const std::string& place, MeshC
     return read_accessor(glb, glb.json.at("accessors").at(whole_number(index)), components);
   };
   out.positions = as_points(read(attributes.at("POSITION"), 3));
-  out.normals = as_points(read(attributes.at("NORMAL"), 3));
+  if (attributes.contains("NORMAL")) out.normals = as_points(read(attributes.at("NORMAL"), 3));
   if (attributes.contains("_FEATURE_ID_0"))
     out.features = as_ids(read(attributes.at("_FEATURE_ID_0"), 1));
   const std::vector<double> indices = read(primitive.at("indices"), 1);
@@ -118,6 +122,11 @@ bool read_plain(Glb& glb, const Json& primitive, const std::string& place, MeshC
   return true;
 }
 
+/// Or none at all.
+bool has_normals(const MeshContent& mesh) {
+  return mesh.normals.empty() || mesh.normals.size() == mesh.positions.size();
+}
+
 /// Corners and values that exist, for all that looks at them.
 bool is_whole(Glb& glb, const std::string& place, const MeshContent& mesh) {
   const int count = static_cast<int>(mesh.positions.size());
@@ -126,9 +135,15 @@ bool is_whole(Glb& glb, const std::string& place, const MeshContent& mesh) {
   });
   if (!is_sound)
     glb.report("accessor", place, "an index reaches beyond the vertices");
-  else if (mesh.normals.size() != mesh.positions.size())
+  else if (!has_normals(mesh))
     glb.report("accessor", place, "normals and positions differ in number");
-  return is_sound && mesh.normals.size() == mesh.positions.size();
+  return is_sound && has_normals(mesh);
+}
+
+bool is_unlit(const Glb& glb, const Json& primitive) {
+  if (!primitive.contains("material")) return false;
+  const Json& material = glb.json.at("materials").at(whole_number(primitive.at("material")));
+  return material.value("extensions", Json::object()).contains("KHR_materials_unlit");
 }
 
 void check_bounds(Glb& glb, const Json& primitive, const std::string& place,
@@ -165,6 +180,7 @@ double step_of(const std::vector<Vec3>& positions) {
 /// Facets' normals are exact, the corners rounded: what light and shading see is the normal, and a
 /// face that is thinner than rounding turns it is not seen.
 std::size_t count_turned_faces(const MeshContent& mesh) {
+  if (mesh.normals.empty()) return 0;
   const double thinnest = kThinnest * step_of(mesh.positions);
   return std::count_if(mesh.faces.begin(), mesh.faces.end(), [&](const Face& f) {
     const Vec3 a = mesh.positions[f[0]], ab = mesh.positions[f[1]] - a,
@@ -175,7 +191,10 @@ std::size_t count_turned_faces(const MeshContent& mesh) {
   });
 }
 
-void check_surface(Glb& glb, const std::string& place, const MeshContent& mesh) {
+void check_surface(Glb& glb, const Json& primitive, const std::string& place,
+                   const MeshContent& mesh) {
+  if (mesh.normals.empty() && !is_unlit(glb, primitive))
+    glb.report("normals", place, "no normals, though its material is lit");
   std::size_t not_finite = 0, not_unit = 0;
   for (const Vec3& p : mesh.positions) not_finite += !p.allFinite();
   for (const Vec3& n : mesh.normals) not_unit += !(std::abs(n.norm() - 1) < 0.05);
@@ -313,7 +332,6 @@ void append(const MeshContent& part, MeshContent& mesh) {
   const auto first = static_cast<int>(mesh.positions.size());
   const bool has_features = !part.features.empty() || !mesh.features.empty();
   mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
-  mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
   if (has_features) {
     mesh.features.resize(static_cast<std::size_t>(first), kNoFeature);
     mesh.features.insert(mesh.features.end(), part.features.begin(), part.features.end());
@@ -343,7 +361,7 @@ void read_mesh(Glb& glb, const Json& primitives, const std::string& where, GlbCo
       continue;
     }
     check_bounds(glb, primitive, place, part);
-    check_surface(glb, place, part);
+    check_surface(glb, primitive, place, part);
     check_features(glb, primitive, place, part, out.rows.size());
     append(part, mesh);
   }

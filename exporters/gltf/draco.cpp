@@ -80,10 +80,21 @@ std::vector<std::array<T, 1>> as_scalars(const std::vector<std::uint32_t>& ids) 
 }
 
 struct Attributes {
-  int position = 0, normal = 0, feature = 0, uv = -1, color = -1;
+  int position = 0, normal = -1, feature = -1, uv = -1, color = -1;
   int uv_bits = 0;
   bool is_one_feature = false;
 };
+
+void add_features(const std::vector<std::uint32_t>& features, draco::Mesh& mesh, Attributes& ids) {
+  constexpr auto kKind = draco::GeometryAttribute::GENERIC;
+  const auto [least, most] = std::minmax_element(features.begin(), features.end());
+  ids.is_one_feature = *least == *most;
+  ids.feature =
+      *most <= kMaxIntegerId
+          ? add_attribute<std::uint16_t, 1>(mesh, kKind, draco::DT_UINT16,
+                                            as_scalars<std::uint16_t>(features))
+          : add_attribute<float, 1>(mesh, kKind, draco::DT_FLOAT32, as_scalars<float>(features));
+}
 
 std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGrid& grid,
                                       Attributes& ids) {
@@ -100,15 +111,10 @@ std::unique_ptr<draco::Mesh> as_draco(const FlatMesh& mesh, const QuantizationGr
   using Kind = draco::GeometryAttribute;
   ids.position =
       add_attribute<float, 3>(*out, Kind::POSITION, draco::DT_FLOAT32, as_floats(rounded));
-  ids.normal =
-      add_attribute<float, 3>(*out, Kind::NORMAL, draco::DT_FLOAT32, as_floats(mesh.normals));
-  const auto [least, most] = std::minmax_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
-  ids.is_one_feature = *least == *most;
-  ids.feature = *most <= kMaxIntegerId
-                    ? add_attribute<std::uint16_t, 1>(*out, Kind::GENERIC, draco::DT_UINT16,
-                                                      as_scalars<std::uint16_t>(mesh.feature_ids))
-                    : add_attribute<float, 1>(*out, Kind::GENERIC, draco::DT_FLOAT32,
-                                              as_scalars<float>(mesh.feature_ids));
+  if (!mesh.normals.empty())
+    ids.normal =
+        add_attribute<float, 3>(*out, Kind::NORMAL, draco::DT_FLOAT32, as_floats(mesh.normals));
+  if (!mesh.feature_ids.empty()) add_features(mesh.feature_ids, *out, ids);
   if (!mesh.uvs.empty()) {
     std::vector<std::array<float, 2>> uvs;
     for (const Vec2f& uv : mesh.uvs) uvs.push_back({uv.x(), uv.y()});
@@ -149,11 +155,11 @@ std::string encode_at(const draco::Mesh& mesh, const Attributes& ids, const Quan
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(packing.speed, kDecodingSpeed);
   encoder.options().SetAttributeOptions(ids.position, position_options(grid));
-  encoder.SetAttributeQuantization(ids.normal, kNormalBits);
+  if (ids.normal >= 0) encoder.SetAttributeQuantization(ids.normal, kNormalBits);
   if (ids.uv >= 0) encoder.SetAttributeQuantization(ids.uv, ids.uv_bits);
   if (packing.position != draco::PREDICTION_UNDEFINED)
     check(encoder.SetAttributePredictionScheme(ids.position, packing.position));
-  if (packing.normal != draco::PREDICTION_UNDEFINED)
+  if (ids.normal >= 0 && packing.normal != draco::PREDICTION_UNDEFINED)
     check(encoder.SetAttributePredictionScheme(ids.normal, packing.normal));
   if (ids.is_one_feature)  // nothing to predict; half of the 32 bytes that ids else take
     check(encoder.SetAttributePredictionScheme(ids.feature, draco::PREDICTION_NONE));
@@ -207,16 +213,16 @@ void read_back(DracoResult& result) {
   result.faces = mesh.num_faces();
   const draco::PointAttribute* position =
       mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
-  const draco::PointAttribute* normal = mesh.GetNamedAttribute(draco::GeometryAttribute::NORMAL);
-  const draco::PointAttribute* feature = mesh.GetNamedAttribute(draco::GeometryAttribute::GENERIC);
-  if (!position || !normal || !feature) refuse("an attribute got lost");
+  if (!position) refuse("the positions got lost");
+  const auto id_of = [&](draco::GeometryAttribute::Type kind) {
+    const draco::PointAttribute* attribute = mesh.GetNamedAttribute(kind);
+    return attribute ? static_cast<int>(attribute->unique_id()) : -1;
+  };
   result.position_id = static_cast<int>(position->unique_id());
-  result.normal_id = static_cast<int>(normal->unique_id());
-  result.feature_id = static_cast<int>(feature->unique_id());
-  if (const auto* uv = mesh.GetNamedAttribute(draco::GeometryAttribute::TEX_COORD))
-    result.uv_id = static_cast<int>(uv->unique_id());
-  if (const auto* color = mesh.GetNamedAttribute(draco::GeometryAttribute::COLOR))
-    result.color_id = static_cast<int>(color->unique_id());
+  result.normal_id = id_of(draco::GeometryAttribute::NORMAL);
+  result.feature_id = id_of(draco::GeometryAttribute::GENERIC);
+  result.uv_id = id_of(draco::GeometryAttribute::TEX_COORD);
+  result.color_id = id_of(draco::GeometryAttribute::COLOR);
   Box box;
   for (std::uint32_t i = 0; i < result.vertices; ++i) {
     std::array<float, 3> p;
@@ -261,6 +267,11 @@ DracoResult encode_draco(const FlatMesh& mesh, const QuantizationGrid& grid) {
   result.bytes = encode_shortest(*input, ids, grid);
   read_back(result);
   if (result.faces != mesh.triangles.size()) refuse("the encoder lost faces");
+  const bool has_all = (result.normal_id >= 0) == (ids.normal >= 0) &&
+                       (result.feature_id >= 0) == (ids.feature >= 0) &&
+                       (result.uv_id >= 0) == (ids.uv >= 0) &&
+                       (result.color_id >= 0) == (ids.color >= 0);
+  if (!has_all) refuse("an attribute got lost");
   return result;
 }
 

@@ -16,8 +16,8 @@ namespace colod {
 /// shared within a facet).
 struct FlatMesh {
   std::vector<Vec3> positions;             ///< metres, in the axes of the container
-  std::vector<Vec3> normals;               ///< unit, per position
-  std::vector<std::uint32_t> feature_ids;  ///< per position; empty only where neither packed
+  std::vector<Vec3> normals;               ///< unit, per position, or empty
+  std::vector<std::uint32_t> feature_ids;  ///< per position, or empty
   std::vector<Vec2f> uvs;                  ///< per position, or empty
   std::vector<Rgb> colors;                 ///< per position, or empty
   int texture_side = 0;                    ///< texels of the longer side that uvs are of
@@ -48,10 +48,10 @@ QuantizationGrid grid_about(const Box& box, double step);
 
 struct DracoResult {
   std::string bytes;
-  std::uint32_t vertices = 0, faces = 0;               ///< as a decoder will see them
-  Vec3 min, max;                                       ///< of the decoded positions
-  int position_id = 0, normal_id = 0, feature_id = 0;  ///< Draco unique ids …
-  int uv_id = -1, color_id = -1;                       ///< … −1: there are none
+  std::uint32_t vertices = 0, faces = 0;                           ///< as a decoder will see them
+  Vec3 min, max;                                                   ///< of the decoded positions
+  int position_id = 0;                                             ///< Draco unique ids …
+  int normal_id = -1, feature_id = -1, uv_id = -1, color_id = -1;  ///< … −1: there are none
 };
 
 /// COLOR_0 as glTF wants it: linear light, opaque; 16 bits, since 8 part dark colours too coarsely.

@@ -65,10 +65,13 @@ OrderedJson add_draco(GltfDocument& document, const FlatMesh& mesh, const Quanti
   box = {draco.min, draco.max};
   OrderedJson extension, attributes;
   extension["bufferView"] = add_buffer_view(document, draco.bytes);
-  extension["attributes"] = {{"POSITION", draco.position_id}, {"NORMAL", draco.normal_id}};
+  extension["attributes"]["POSITION"] = draco.position_id;
   attributes["POSITION"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
   set_bounds(document, attributes["POSITION"], box);
-  attributes["NORMAL"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
+  if (draco.normal_id >= 0) {
+    extension["attributes"]["NORMAL"] = draco.normal_id;
+    attributes["NORMAL"] = add_accessor(document, kFloat, "VEC3", draco.vertices);
+  }
   if (draco.uv_id >= 0) {
     extension["attributes"]["TEXCOORD_0"] = draco.uv_id;
     attributes["TEXCOORD_0"] = add_accessor(document, kFloat, "VEC2", draco.vertices);
@@ -77,10 +80,12 @@ OrderedJson add_draco(GltfDocument& document, const FlatMesh& mesh, const Quanti
     extension["attributes"]["COLOR_0"] = draco.color_id;
     attributes["COLOR_0"] = add_colors(document, draco.vertices, -1);
   }
-  const auto most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
-  extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
-  attributes["_FEATURE_ID_0"] =
-      add_accessor(document, most > kMaxShort ? kFloat : kUnsignedShort, "SCALAR", draco.vertices);
+  if (draco.feature_id >= 0) {
+    const auto most = *std::max_element(mesh.feature_ids.begin(), mesh.feature_ids.end());
+    extension["attributes"]["_FEATURE_ID_0"] = draco.feature_id;
+    attributes["_FEATURE_ID_0"] = add_accessor(document, most > kMaxShort ? kFloat : kUnsignedShort,
+                                               "SCALAR", draco.vertices);
+  }
   OrderedJson primitive;
   primitive["attributes"] = attributes;
   primitive["indices"] =
@@ -123,8 +128,9 @@ OrderedJson add_plain(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   attributes["POSITION"] =
       add_accessor(document, kFloat, "VEC3", n, add_buffer_view(document, positions, kArrayBuffer));
   set_bounds(document, attributes["POSITION"], box);
-  attributes["NORMAL"] =
-      add_accessor(document, kFloat, "VEC3", n, add_buffer_view(document, normals, kArrayBuffer));
+  if (!normals.empty())
+    attributes["NORMAL"] =
+        add_accessor(document, kFloat, "VEC3", n, add_buffer_view(document, normals, kArrayBuffer));
   add_plain_look(document, mesh, attributes);
   if (!ids.empty())
     attributes["_FEATURE_ID_0"] =
@@ -186,6 +192,11 @@ void add_packed_look(GltfDocument& document, const FlatMesh& mesh,
     attributes["COLOR_0"] = add_colors(document, order.size(), add_packed(document, colors));
 }
 
+void put_normal(std::string& bytes, const Vec3& n) {
+  for (int k = 0; k < 3; ++k) put(bytes, static_cast<std::int8_t>(std::lround(127 * n[k])));
+  put(bytes, std::int8_t{0});  // elements are a multiple of four bytes
+}
+
 OrderedJson add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) {
   std::vector<std::uint32_t> indices, order;
   for (const Face& f : mesh.triangles)
@@ -197,10 +208,8 @@ OrderedJson add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) 
     const Eigen::Vector3f p = mesh.positions[v].cast<float>();
     box.extend(Vec3(p.cast<double>()));
     for (int k = 0; k < 3; ++k) put(positions.bytes, p[k]);
-    for (int k = 0; k < 3; ++k)
-      put(normals.bytes, static_cast<std::int8_t>(std::lround(127 * mesh.normals[v][k])));
-    put(normals.bytes, std::int8_t{0});
-    put(ids.bytes, static_cast<float>(mesh.feature_ids[v]));
+    if (!mesh.normals.empty()) put_normal(normals.bytes, mesh.normals[v]);
+    if (!mesh.feature_ids.empty()) put(ids.bytes, static_cast<float>(mesh.feature_ids[v]));
   }
   OrderedJson primitive, attributes;
   const int index_view = add_packed_view(
@@ -208,11 +217,14 @@ OrderedJson add_meshopt(GltfDocument& document, const FlatMesh& mesh, Box& box) 
   attributes["POSITION"] =
       add_accessor(document, kFloat, "VEC3", order.size(), add_packed(document, positions));
   set_bounds(document, attributes["POSITION"], box);
-  attributes["NORMAL"] =
-      add_accessor(document, kByte, "VEC3", order.size(), add_packed(document, normals));
-  document.json["accessors"][attributes["NORMAL"].get<int>()]["normalized"] = true;
-  attributes["_FEATURE_ID_0"] =
-      add_accessor(document, kFloat, "SCALAR", order.size(), add_packed(document, ids));
+  if (!normals.bytes.empty()) {
+    attributes["NORMAL"] =
+        add_accessor(document, kByte, "VEC3", order.size(), add_packed(document, normals));
+    document.json["accessors"][attributes["NORMAL"].get<int>()]["normalized"] = true;
+  }
+  if (!ids.bytes.empty())
+    attributes["_FEATURE_ID_0"] =
+        add_accessor(document, kFloat, "SCALAR", order.size(), add_packed(document, ids));
   add_packed_look(document, mesh, order, attributes);
   primitive["attributes"] = attributes;
   primitive["indices"] = add_accessor(document, kUnsignedInt, "SCALAR", indices.size(), index_view);

@@ -17,19 +17,13 @@ using OrderedJson = nlohmann::ordered_json;
 namespace {
 
 constexpr int kUntextured = -1;
-
-/// The axis, with its sign, that a normal is nearest to.
-Vec3 side_of(const Vec3& normal) {
-  int axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
-  Vec3 side = Vec3::Zero();
-  side[axis] = normal[axis] >= 0 ? 1 : -1;
-  return side;
-}
+constexpr std::size_t kMostInFile = 32;  // tiles below one: more go to a file of their own
+const std::string kFolder = "tiles/context/";
 
 /// The faces of one image, each corner once for each place in it; glTF axes, rounded to the grid.
+/// Unlit: nothing ever asks for normals.
 FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& rounded) {
-  using Key = std::tuple<int, float, float, Rgb, double, double, double>;
+  using Key = std::tuple<int, float, float, Rgb>;
   FlatMesh out;
   std::map<Key, int> numbers;
   for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f) {
@@ -37,18 +31,14 @@ FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& ro
     const Face& face = mesh.mesh.faces[f];
     const auto at = [&](std::size_t c) { return rounded[static_cast<std::size_t>(face[c])]; };
     if (at(0) == at(1) || at(1) == at(2) || at(2) == at(0)) continue;
-    // Unlit: of normals nothing but the side is ever asked for.
-    const Vec3 side = side_of((at(1) - at(0)).cross(at(2) - at(0)));
     Face flat;
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec2f uv = image >= 0 ? mesh.uvs[f][c] : Vec2f(0, 0);
       const Rgb rgb = image >= 0 ? Rgb{} : mesh.colors[f][c];
-      const Key key(face[c], uv.x(), uv.y(), rgb, side.x(), side.y(), side.z());
+      const Key key(face[c], uv.x(), uv.y(), rgb);
       const auto [known, is_new] = numbers.try_emplace(key, static_cast<int>(out.positions.size()));
       if (is_new) {
         out.positions.push_back(at(c));
-        out.normals.push_back(side);
-        out.feature_ids.push_back(0);
         if (image >= 0) out.uvs.push_back(uv);
         if (image < 0) out.colors.push_back(rgb);
       }
@@ -103,6 +93,39 @@ std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& 
   return finish_glb(std::move(document));
 }
 
+/// Where nodes' files lie: subtrees of many tiles are tilesets of their own, so that whoever is far
+/// away reads nothing of what lies below them.
+class Files {
+ public:
+  explicit Files(const std::vector<ContextNode>& nodes)
+      : is_apart_(nodes.size(), 0), is_below_(nodes.size(), 0) {
+    std::vector<std::size_t> tiles(nodes.size(), 1);  // in one file, the node and those below it
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      if (nodes[i].parent < 0) continue;
+      is_apart_[i] = tiles[i] > kMostInFile;
+      tiles[static_cast<std::size_t>(nodes[i].parent)] += is_apart_[i] ? 1 : tiles[i];
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      is_below_[i] = is_apart_[i] ||
+                     (nodes[i].parent >= 0 && is_below_[static_cast<std::size_t>(nodes[i].parent)]);
+  }
+
+  bool is_apart(std::size_t i) const { return is_apart_[i]; }
+  static std::string glb(std::size_t i) { return kFolder + std::to_string(i) + ".glb"; }
+  static std::string tileset(std::size_t i) { return kFolder + std::to_string(i) + ".json"; }
+  /// As the file says that names the node's content.
+  std::string uri(std::size_t i) const { return is_below_[i] ? in_folder(glb(i)) : glb(i); }
+  /// As the file says that stands above it.
+  std::string stub_uri(std::size_t i, int parent) const {
+    return parent >= 0 && is_below_[static_cast<std::size_t>(parent)] ? in_folder(tileset(i))
+                                                                      : tileset(i);
+  }
+
+ private:
+  static std::string in_folder(const std::string& path) { return path.substr(kFolder.size()); }
+  std::vector<char> is_apart_, is_below_;
+};
+
 }  // namespace
 
 std::vector<ContextTile> encode_context(const ContextTiles& context, const TileFrame& frame,
@@ -111,10 +134,11 @@ std::vector<ContextTile> encode_context(const ContextTiles& context, const TileF
   const std::size_t count = context.nodes.size();
   std::vector<ContextTile> tiles(count);
   std::vector<char> is_shown(count, 0);
-  const auto path_of = [](std::size_t i) { return "tiles/context/" + std::to_string(i) + ".glb"; };
+  const Files files(context.nodes);
   parallel_for(count, [&](std::size_t i) {
-    const Encoded file{path_of(i), glb_of(context.mesh(i), frame, "context-" + std::to_string(i),
-                                          compression, quantization, tiles[i].box)};
+    const Encoded file{Files::glb(i),
+                       glb_of(context.mesh(i), frame, "context-" + std::to_string(i), compression,
+                              std::max(quantization, context.nodes[i].rounding), tiles[i].box)};
     is_shown[i] = !file.bytes.empty();
     if (is_shown[i]) take(file);
   });
@@ -129,10 +153,14 @@ std::vector<ContextTile> encode_context(const ContextTiles& context, const TileF
     tile.json["boundingVolume"] = box_json(tile.box);
     tile.json["geometricError"] = tile.error;
     tile.json["refine"] = node.is_added ? "ADD" : "REPLACE";
-    if (is_shown[i]) tile.json["content"]["uri"] = path_of(i);
+    if (is_shown[i]) tile.json["content"]["uri"] = files.uri(i);
     if (!is_leaf) {
       std::reverse(children[i].begin(), children[i].end());
       tile.json["children"] = std::move(children[i]);
+    }
+    if (files.is_apart(i)) {
+      const std::string uri = files.stub_uri(i, node.parent);
+      take({Files::tileset(i), put_apart(tile.json, tile.error, uri)});
     }
     if (node.parent < 0) {
       tops.push_back(std::move(tile));

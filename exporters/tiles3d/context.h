@@ -30,6 +30,7 @@ struct ContextNode {
   int parent = -1;             ///< rising: parents come before children; −1: beside the buildings
   double geometric_error = 0;  ///< metres; raised where children's would not lie below it
   bool is_added = false;       ///< its children join what it shows
+  double rounding = 0;         ///< metres that positions may be off, if more than `quantization`
 };
 
 /// All of it; a mesh is asked for when its tile is encoded.
@@ -46,8 +47,10 @@ struct ContextTile {
 };
 
 /// The tiles beside the buildings, in `frame`; `take` gets their files, tiles/context/<n>.glb, as
-/// soon as they are made, from several threads. Images are written as they are; positions are
-/// rounded to `quantization`. Runs in parallel.
+/// soon as they are made, from several threads; where many lie below a tile it and these are a
+/// tileset, tiles/context/<n>.json. Without normals, since nothing is lit. Images are written as
+/// they are; positions are rounded to `quantization`, in metres, or as the node says. Runs in
+/// parallel.
 std::vector<ContextTile> encode_context(const ContextTiles& context, const TileFrame& frame,
                                         Compression compression, double quantization,
                                         const std::function<void(const Encoded&)>& take);

@@ -46,6 +46,7 @@ struct TilesetFile {
   TileFrame frame;
   std::deque<PolygonMesh> meshes = {};
   std::vector<Content> contents = {};  // parents before children
+  std::vector<Encoded> apart = {};     // tilesets that refine its tiles
 
   std::string below() const { return folder.empty() ? "tiles/" : folder; }
   std::string path() const { return folder + "tileset.json"; }
@@ -82,10 +83,6 @@ OrderedJson start_tileset(const TilesOptions& options, const TileFrame& frame, T
   root.json["refine"] = "REPLACE";
   tileset["root"] = std::move(root.json);
   return tileset;
-}
-
-std::string dumped(const OrderedJson& json) {
-  return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 /// At the middle of the parts' foot, to the metre.
@@ -148,12 +145,13 @@ class TilesetWriter {
     keep(file, all);
     std::size_t next = 0;
     Files contents;
-    Tile tile = assemble(file, root, next, contents);
+    Tile tile = assemble(file, root, file.folder, next, contents);
     input_.depot.close();
     Files around;
     if (options_.context) tile = beside_context(options_, file.frame, std::move(tile), around);
     if (file.frame.is_on_earth()) tile.json["transform"] = file.frame.to_ecef();
-    Files files = {{file.path(), dumped(start_tileset(options_, file.frame, std::move(tile)))}};
+    Files files = {{file.path(), compact(start_tileset(options_, file.frame, std::move(tile)))}};
+    for (Encoded& part : file.apart) give(std::move(part));
     for (Files* more : {&tilesets_, &contents, &around})
       files.insert(files.end(), std::make_move_iterator(more->begin()),
                    std::make_move_iterator(more->end()));
@@ -169,22 +167,24 @@ class TilesetWriter {
     add_finest(file);
     Finished done{file.frame, {}, 0, {}};
     std::size_t next = 0;
-    Tile tile = assemble(file, planned, next, done.contents);
+    Tile tile = assemble(file, planned, file.folder, next, done.contents);
     done.box = tile.box, done.error = tile.error;
-    Encoded tileset{file.path(), dumped(start_tileset(options_, file.frame, std::move(tile)))};
-    if (take_) {
-      hand_over(file, left);
-      take_(tileset);
-      tileset.bytes = {};
-      if (!left.empty()) keep(file, all);
-    }
-    if (is_listed()) tilesets_.push_back(std::move(tileset));
+    if (take_) hand_over(file, left);
+    for (Encoded& part : file.apart) give(std::move(part));
+    give({file.path(), compact(start_tileset(options_, file.frame, std::move(tile)))});
+    if (take_ && !left.empty()) keep(file, all);
     finished_.emplace(planned.name, std::move(done));
     planned = {.name = planned.name, .boxes = {}, .parts = {}, .children = {}, .is_tileset = true};
     input_.depot.close();
   }
 
   bool is_listed() const { return !take_ || options_.lists_files; }
+
+  /// A tileset's file: its bytes go along where nobody takes them.
+  void give(Encoded tileset) {
+    if (take_) take_(tileset), tileset.bytes = {};
+    if (is_listed()) tilesets_.push_back(std::move(tileset));
+  }
 
   TilesetFile start(PlannedTile& planned, const std::string& folder) const {
     std::deque<PolygonMesh> meshes;
@@ -298,20 +298,22 @@ class TilesetWriter {
 
   /// The tile at `next` in the list of contents, with all below; `next` moves behind them. Its
   /// error is target_sse times the content's gsd, raised where children would not lie strictly
-  /// below; 0 for a leaf. Contents go to `listed`.
-  Tile assemble(TilesetFile& file, const PlannedTile& planned, std::size_t& next, Files& listed) {
+  /// below; 0 for a leaf. Contents go to `listed`; `base`: the folder that URIs start from.
+  Tile assemble(TilesetFile& file, const PlannedTile& planned, const std::string& base,
+                std::size_t& next, Files& listed) {
     if (planned.is_tileset && next > 0) return wrap(file, planned, listed);
+    const std::string own_base = planned.is_apart ? file.below() : base;
     Content& content = file.contents[next++];
     Tile tile;
     tile.box = content.box;
     if (!planned.children.empty())
       tile.error = std::max(kLeastError, options_.target_sse * content.gsd);
-    const std::string uri = percent_encoded(content.file.path.substr(file.folder.size()));
+    const std::string uri = percent_encoded(content.file.path.substr(own_base.size()));
     const std::size_t place = listed.size();
     if (is_listed()) listed.emplace_back();
     OrderedJson children = OrderedJson::array();
     for (const PlannedTile& below : planned.children) {
-      Tile child = assemble(file, below, next, listed);
+      Tile child = assemble(file, below, own_base, next, listed);
       tile.box.extend(child.box);
       tile.error = std::max(tile.error, kRise * child.error);
       children.push_back(std::move(child.json));
@@ -325,6 +327,12 @@ class TilesetWriter {
     }
     if (!children.empty()) tile.json["children"] = std::move(children);
     if (is_listed()) listed[place] = listed_file(content);
+    if (planned.is_apart) {
+      const std::string path = file.below() + planned.name + ".json";
+      tile.json["refine"] = "REPLACE";
+      file.apart.push_back(
+          {path, put_apart(tile.json, tile.error, percent_encoded(path.substr(base.size())))});
+    }
     return tile;
   }
 

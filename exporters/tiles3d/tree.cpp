@@ -18,7 +18,7 @@ constexpr std::size_t kMostChildren = 16;  // REPLACE waits for all children of 
 constexpr std::size_t kMostInCell = 256;   // buildings
 constexpr double kWidestCell = 1000;       // metres: the Earth is flat to 2 cm about its middle
 constexpr double kStandInShare = 0.025;    // of the finest layers' triangles
-constexpr double kMostShare = 0.05;        // of them, where that gives each building its own
+constexpr double kMostShare = 0.05;  // … of the root, where that gives each building its own
 constexpr std::size_t kMostStandIns = 64;  // in one tile
 constexpr double kNearer = 1.005;  // scope scene: a level may stand so much nearer than others' …
 constexpr double kWorthATile = 1.4;  // … scope building: so much nearer that it is worth a tile
@@ -61,10 +61,13 @@ class Planner {
     const bool is_top = name == kRoot, starts_cell = !is_in_cell && is_cell(group);
     if (starts_cell) access_.open(group);
     is_in_cell |= starts_cell;
-    const std::size_t most = budget(group);
+    const std::size_t most = budget(group, is_top);
+    const bool is_one_of_many = group.size() > kMostChildren;
     std::vector<StandInBox> shown;
     const auto add_near = [&](const std::vector<int>& part, const std::string& child) {
       tile.children.push_back(most < group.size() ? box_tile(part, child) : near_tile(part, child));
+      PlannedTile& near = tile.children.back();
+      near.is_apart = is_one_of_many && !near.children.empty();
       for (const int b : part) shown.push_back(single(b));
     };
     if (group.size() <= kMostChildren) {
@@ -157,7 +160,11 @@ class Planner {
     return {{b}, &level, &level.mesh, building.origin, level.gsd, level.deviation};
   }
 
-  std::size_t budget(const std::vector<int>& group) const {
+  /// Of boxes. So many as a tile may have at all cost a client nothing, each building its own:
+  /// merged ones are metres off, and would give way to those of single buildings soon. From where
+  /// the root is seen nearly nothing is needed.
+  std::size_t budget(const std::vector<int>& group, bool is_top) const {
+    if (!is_top && group.size() <= kMostStandIns) return group.size();
     double finest = 0;
     for (const int b : group) finest += static_cast<double>(outlines_[b].triangles);
     const auto boxes = [&](double share) {

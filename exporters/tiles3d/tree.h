@@ -29,6 +29,7 @@ struct PlannedTile {
   std::vector<TilePart> parts;    ///< … as show_boxes() makes them, or buildings' levels
   std::vector<PlannedTile> children;
   bool is_tileset = false;  ///< a tileset of its own, in its own frame
+  bool is_apart = false;    ///< with all below it in a file of its own, in its tileset's frame
   bool is_finest = false;   ///< what nothing refines: a finer grid
   std::size_t entries = 1;  ///< tiles in the file of its tileset, itself and those below; one that
                             ///< is a tileset itself counts as one
@@ -67,8 +68,10 @@ struct PlanAccess {
 /// the top of its chain. Groups part by medians along the longer side and then across: every inner
 /// tile has four children. Subtrees of up to 256 buildings and a kilometre become tilesets of their
 /// own (cells) when the whole is larger, and so do the children of a tile whose tileset would have
-/// more than `most_entries` tiles. `outlines` not empty; parts point to what `access` gives. In
-/// memory are some numbers a building, and what waits for its tileset to be finished.
+/// more than `most_entries` tiles. Groups of several have files of their own in a tileset, so that
+/// whoever is far away reads nothing of single buildings. `outlines` not empty; parts point to what
+/// `access` gives. In memory are some numbers a building, and what waits for its tileset to be
+/// finished.
 PlannedTile plan_tiles(const std::vector<TileOutline>& outlines, const PlanAccess& access,
                        const SwitchFacts& facts = {}, std::size_t most_entries = kMostEntries);
 

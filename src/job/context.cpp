@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/error.h"
 #include "scene/closing.h"
 #include "scene/coarse_images.h"
 #include "scene/context_chain.h"
+#include "scene/lighter.h"
 #include "scene/own_images.h"
 #include "scene/skirts.h"
 
@@ -19,9 +19,13 @@ namespace colod {
 
 namespace {
 
-constexpr double kCell = 64;      // metres: ground that the program makes comes in such squares
-constexpr double kServing = 0.5;  // of the finest tiles: so many with coarser ones above them
-constexpr double kFinest = 2048;  // pixels along a square of ground, at most
+constexpr double kCell = 64;            // metres: bare ground comes in such squares
+constexpr double kServing = 0.5;        // of the finest tiles: so many with coarser ones above them
+constexpr double kFinest = 2048;        // pixels along a square of ground, at most
+constexpr double kFlat = 0.05;          // metres: ground that nobody has seen needs no finer detail
+constexpr double kStraight = 1e-3;      // metres: a corner that is off by less is none
+constexpr double kRounding = 1.0 / 16;  // of a texel: such tiles fit their neighbours no better
+constexpr double kDeeper = 2;           // times what a rim may move
 constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decoded images
 
 using Pieces = std::vector<Territories::Piece>;
@@ -34,7 +38,7 @@ struct Around {
 
   Around(const std::shared_ptr<const PartedScene>& whole, const std::vector<char>& is_unbuilt)
       : scene(whole),
-        built(whole->territories.without(is_unbuilt)),
+        built(whole->territories.without(is_unbuilt).coarser(kStraight)),
         ground(whole->map, whole->classes) {}
 };
 using Place = std::shared_ptr<const Around>;
@@ -83,35 +87,78 @@ bool has_own_chain(const SceneTiles& tiles) {
   return static_cast<double>(served) >= kServing * static_cast<double>(tiles.finest().size());
 }
 
-/// What of a tile is no building's, closed where it was cut.
-Source beside_buildings(const Around& place, const Source& tile) {
+/// What of a tile is no building's, closed where it was cut, and as much lighter as `error` allows;
+/// 0: as it is. Where a rim moves, what hangs from it hides what opens beside it.
+Source beside_buildings(const Around& place, const Source& tile, double error) {
   Source out = place.built.cut_out(tile, -1);
-  add_skirts(place.built, place.ground, out);
-  return out;
+  const std::vector<char> is_joint = add_skirts(place.built, place.ground, out, kDeeper * error);
+  return error > 0 ? lighter(out, is_joint, error) : out;
 }
 
-/// The ground below buildings.
-Source below_buildings(const Around& place, const Pieces& pieces) {
+/// The ground below buildings. Where nothing else is lighter its rim stays where it is.
+Source below_buildings(const Around& place, const Pieces& pieces, double error) {
   Source out = place.ground.below(pieces);
-  add_skirts(place.built, place.ground, out);
+  const bool is_finest = error <= 0;
+  std::vector<char> is_rim = on_border(out.mesh);
+  const std::vector<char> is_joint = add_skirts(place.built, place.ground, out, kDeeper * error);
+  is_rim.resize(is_joint.size(), 0);
+  return lighter(out, is_finest ? is_rim : is_joint, is_finest ? kFlat : error);
+}
+
+Vec2 middle_of(const Territories::Piece& piece) {
+  return (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
+}
+
+/// Whose tile closes a piece of ground: that over its middle, or the nearest.
+std::size_t tile_below(const SceneTiles& tiles, const Vec2& p) {
+  std::size_t best = 0;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < tiles.count(); ++i) {
+    const Box& box = tiles.box(i);
+    const Vec2 off = (box.min.head<2>() - p).cwiseMax(p - box.max.head<2>()).cwiseMax(0);
+    if (off.norm() < least) least = off.norm(), best = i;
+    if (least == 0) break;
+  }
+  return best;
+}
+
+/// Per node of the tree the pieces of the plan that its ground closes: those of the finest tile
+/// over each, and of all coarser ones that such a tile replaces.
+std::vector<Pieces> closed_by(const Around& place) {
+  const SceneTiles& tiles = place.scene->tiles;
+  const std::vector<TileNode>& nodes = tiles.tree().nodes;
+  std::vector<Pieces> out(nodes.size());
+  for (const Territories::Piece& piece : place.built.pieces()) {
+    int node = tiles.node(tile_below(tiles, middle_of(piece)));
+    while (node >= 0) {
+      const auto n = static_cast<std::size_t>(node);
+      if (!nodes[n].contents.empty()) out[n].push_back(piece);
+      node = nodes[n].parent;
+      if (node >= 0 && nodes[static_cast<std::size_t>(node)].is_added) break;  // both are seen
+    }
+  }
   return out;
 }
 
-/// What a node shows beside the buildings; what of it cannot be read is among its warnings.
-Source read_node(const Around& place, std::size_t i, const ReadOptions& options) {
+/// What a node shows beside the buildings, as light as `error` allows; what of it cannot be read is
+/// among its warnings.
+Source read_node(const Around& place, std::size_t i, const Pieces& closed, double error,
+                 const ReadOptions& options) {
   const SceneTiles& tiles = place.scene->tiles;
   const TileNode& node = tiles.tree().nodes[i];
   std::vector<std::string> problems;
   std::vector<Source> parts;
   for (const std::string& content : node.contents) {
     try {
-      parts.push_back(beside_buildings(place, read_tile(node, content, tiles.to_scene(), options)));
+      const Source tile = read_tile(node, content, tiles.to_scene(), options);
+      parts.push_back(beside_buildings(place, tile, error));
     } catch (const Error& e) {
       problems.push_back(content + ": " + cause_of(e));
     } catch (const std::exception& e) {  // a library gave up: this tile's problem only
       problems.push_back(content + ": cannot be read: " + e.what());
     }
   }
+  parts.push_back(below_buildings(place, closed, error));
   Source whole = joined(parts);
   whole.warnings = std::move(problems);
   return whole;
@@ -122,23 +169,25 @@ class Nodes {
  public:
   explicit Nodes(const SceneOutput& output) : output_(output) {}
 
-  /// The scene's own tiles on all their levels. One that finer ones replace is seen while its error
-  /// is no more than the pixels asked for: it needs no texel below that error's share of a pixel.
+  /// The scene's own tiles on all their levels, each with the ground that closes it. One that finer
+  /// ones replace is seen while its error is no more than the pixels asked for: it needs neither a
+  /// texel nor a face below that error's share of a pixel.
   void add_tree(const Place& place, const ReadOptions& options) {
     const std::vector<TileNode>& tree = place->scene->tiles.tree().nodes;
     const std::vector<char> is_left_out = too_fine(place->scene->tiles);
     const std::vector<char> is_replaced = replaced(tree, is_left_out);
     const auto images = std::make_shared<const CoarseImages>(kChainImages);
+    const auto closed = std::make_shared<const std::vector<Pieces>>(closed_by(*place));
     std::vector<int> number;
     for (std::size_t i = 0; i < tree.size(); ++i) {
       number.push_back(static_cast<int>(nodes_.size()));
       if (is_left_out[i]) continue;
       const int above = tree[i].parent;
-      nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
-                        tree[i].geometric_error, tree[i].is_added});
       const double texel = is_replaced[i] ? tree[i].geometric_error / output_.target_sse : 0;
-      read_.push_back([place, options, images, texel, i] {
-        Source shown = read_node(*place, i, options);
+      nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
+                        tree[i].geometric_error, tree[i].is_added, kRounding * texel});
+      read_.push_back([place, options, images, closed, texel, i] {
+        Source shown = read_node(*place, i, (*closed)[i], texel, options);
         if (texel > 0) images->give(shown, texel);
         return shown;
       });
@@ -157,7 +206,7 @@ class Nodes {
       const auto leaf = static_cast<std::size_t>(std::max(node.leaf, 0));
       if (node.leaf >= 0 && leaves[leaf].texel > 0) continue;  // no tile itself
       nodes_.push_back({node.parent < 0 ? -1 : number[static_cast<std::size_t>(node.parent)],
-                        error_of(node, output_), false});
+                        error_of(node, output_), false, 0});
       if (node.leaf >= 0)
         read_.push_back([read, leaf] { return read(leaf); });
       else
@@ -179,47 +228,6 @@ class Nodes {
   std::vector<std::function<Source()>> read_;
 };
 
-Box box_of(const Pieces& pieces) {
-  Box box;
-  for (const Territories::Piece& piece : pieces)
-    for (const Vec2& p : piece.corners) box.extend(Vec3(p.x(), p.y(), 0));
-  return box;
-}
-
-Vec2 middle_of(const Territories::Piece& piece) {
-  return (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
-}
-
-/// The ground below buildings, square by square.
-void add_closing(const Place& place, Nodes& nodes) {
-  std::map<std::array<int, 2>, Pieces> squares;
-  for (const Territories::Piece& piece : place->built.pieces()) {
-    const Vec2 at = middle_of(piece) / kCell;
-    squares[{static_cast<int>(std::floor(at.y())), static_cast<int>(std::floor(at.x()))}].push_back(
-        piece);
-  }
-  auto all = std::make_shared<std::vector<Pieces>>();
-  for (auto& [at, pieces] : squares) all->push_back(std::move(pieces));
-  const auto close = [place, all](std::size_t i) { return below_buildings(*place, (*all)[i]); };
-  std::vector<ChainLeaf> leaves;
-  for (std::size_t i = 0; i < all->size(); ++i)
-    leaves.push_back({box_of((*all)[i]), [close, i] { return ChainPart{close(i), {}, {}}; }, 0});
-  nodes.add_chain(leaves, close);
-}
-
-/// Whose tile closes a piece of ground: that over its middle, or the nearest.
-std::size_t tile_below(const SceneTiles& tiles, const Vec2& p) {
-  std::size_t best = 0;
-  double least = INFINITY;
-  for (std::size_t i = 0; i < tiles.count(); ++i) {
-    const Box& box = tiles.box(i);
-    const Vec2 off = (box.min.head<2>() - p).cwiseMax(p - box.max.head<2>()).cwiseMax(0);
-    if (off.norm() < least) least = off.norm(), best = i;
-    if (least == 0) break;
-  }
-  return best;
-}
-
 /// The finest tiles, each with the ground that closes it, and coarser ones of the program's own.
 void add_own_chain(const Place& place, Nodes& nodes) {
   const SceneTiles& tiles = place->scene->tiles;
@@ -227,7 +235,7 @@ void add_own_chain(const Place& place, Nodes& nodes) {
   for (const Territories::Piece& piece : place->built.pieces())
     (*pieces)[tile_below(tiles, middle_of(piece))].push_back(piece);
   const auto show = [place, pieces](std::size_t i, const Source& tile) {
-    return joined({beside_buildings(*place, tile), below_buildings(*place, (*pieces)[i])});
+    return joined({beside_buildings(*place, tile, 0), below_buildings(*place, (*pieces)[i], 0)});
   };
   std::vector<ChainLeaf> leaves;
   for (std::size_t i = 0; i < pieces->size(); ++i) {
@@ -299,7 +307,6 @@ std::shared_ptr<const Context> context_of(const std::shared_ptr<const PartedScen
     add_bare_ground(place, nodes);
   } else if (has_own_chain(scene->tiles)) {
     nodes.add_tree(place, options);
-    add_closing(place, nodes);
   } else {
     add_own_chain(place, nodes);
   }

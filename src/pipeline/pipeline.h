@@ -132,6 +132,7 @@ struct Context {
     int parent = -1;             ///< parents come before children
     double geometric_error = 0;  ///< metres, as the source has it
     bool is_added = false;       ///< its children join what it shows instead of replacing it
+    double rounding = 0;         ///< metres that positions may be off, if more than the output's
   };
   std::vector<Node> nodes;
   std::function<Source(std::size_t node)> read;                    ///< what it shows; thread-safe

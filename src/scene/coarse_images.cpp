@@ -13,7 +13,7 @@ namespace colod {
 
 namespace {
 
-constexpr double kWorth = 0.75;     // of the texels: of what is more they stay
+constexpr double kWorth = 0.9;      // of the texels: of what is more they stay
 constexpr int kRim = 1;             // texels around a chart
 constexpr double kTouching = 0.45;  // pixels between a triangle and the middle of one that it wears
 constexpr double kLeastPixels = 1e-6;
@@ -185,6 +185,15 @@ void wear(const Moving& m, const PackedRect* rects, const std::array<int, 2>& al
   }
 }
 
+/// All of each image as one chart, where its charts would take more room than that.
+void join_charts(const Source& source, double texel, std::vector<Moving>& moving) {
+  for (Moving& m : moving) {
+    m.worn.charts = {{0, 0, m.width, m.height}};
+    std::fill(m.worn.chart.begin(), m.worn.chart.end(), 0);
+    m.sizes = {size_of(m.worn.charts[0], std::min(1.0, own_texels(source, m)[0] / texel))};
+  }
+}
+
 }  // namespace
 
 struct CoarseImages::Impl {
@@ -238,10 +247,14 @@ Raster CoarseImages::Impl::draw_all(const Source& source, const std::vector<Movi
 }
 
 void CoarseImages::give(Source& source, double texel) const {
-  const std::vector<Moving> moving = impl_->moving(source, texel);
+  std::vector<Moving> moving = impl_->moving(source, texel);
   double texels = 0;
   for (const Moving& m : moving) texels += static_cast<double>(m.width) * m.height;
-  const Packing packing = pack(moving, texels);
+  Packing packing = pack(moving, texels);
+  if (packing.size[0] == 0) {
+    join_charts(source, texel, moving);
+    packing = pack(moving, texels);
+  }
   if (packing.size[0] == 0) return;
   const Raster raster = impl_->draw_all(source, moving, packing);
   if (raster.width == 0) return;

@@ -1,5 +1,4 @@
-// Based on: own work; Garland & Heckbert, Surface simplification using quadric error metrics, 1997
-// (meshoptimizer). Differs: the look of coarser tiles is drawn from straight above, which is how
+// Based on: own work. Differs: the look of coarser tiles is drawn from straight above, which is how
 // such surfaces were seen: what is upright is as wide as a pixel there.
 #include "context_chain.h"
 
@@ -10,12 +9,11 @@
 #include "context_picture.h"
 #include "core/bytes.h"
 #include "core/error.h"
-#include "core/meshopt.h"
 #include "core/parallel.h"
-#include "core/rays.h"
 #include "image/look_sampler.h"
 #include "parameters.h"
 #include "scratch_file.h"
+#include "simplification.h"
 #include "tiles.h"
 
 namespace colod {
@@ -92,13 +90,6 @@ class Grouping {
 
 double plan_side(const Box& box) { return std::max(box.size().x(), box.size().y()); }
 
-/// What a coarser tile is made of, and has become.
-struct Work {
-  Mesh mesh;
-  std::vector<char> is_joint;
-  double deviation = 0;
-};
-
 /// One mesh of all; joints are those that are still on a border.
 Work join(const std::vector<ChainPart>& parts) {
   std::vector<Source> bare;
@@ -106,7 +97,7 @@ Work join(const std::vector<ChainPart>& parts) {
     bare.emplace_back();
     bare.back().mesh = part.source.mesh;
   }
-  Work work{joined(bare).mesh, {}, 0};
+  Work work{joined(bare).mesh, {}, {}, 0};
   work.is_joint.assign(work.mesh.vertices.size(), 0);
   for (const ChainPart& part : parts) {
     const std::vector<char> marks = marked_as(work.mesh, part.source.mesh, part.is_joint);
@@ -115,120 +106,6 @@ Work join(const std::vector<ChainPart>& parts) {
   const std::vector<char> is_open = on_border(work.mesh);
   for (std::size_t v = 0; v < is_open.size(); ++v) work.is_joint[v] &= is_open[v];
   return work;
-}
-
-/// Vertices that nothing uses are left out.
-Work picked(const Work& from, const std::vector<std::uint32_t>& indices) {
-  Work out;
-  std::vector<int> number(from.mesh.vertices.size(), -1);
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    Face face;
-    for (std::size_t k = 0; k < 3; ++k) {
-      int& n = number[indices[i + k]];
-      if (n < 0) {
-        n = static_cast<int>(out.mesh.vertices.size());
-        out.mesh.vertices.push_back(from.mesh.vertices[indices[i + k]]);
-        out.is_joint.push_back(from.is_joint[indices[i + k]]);
-      }
-      face[k] = n;
-    }
-    out.mesh.faces.push_back(face);
-  }
-  return out;
-}
-
-/// Metres from places to a mesh.
-std::vector<double> distances(const std::vector<Vec3>& places, const Mesh& to) {
-  const RayScene scene(to);
-  std::vector<double> out;
-  for (const Vec3& p : places) out.push_back(scene.nearest(p).distance);
-  return out;
-}
-
-/// Metres from the middles of a mesh's faces and edges to another one, at most: its vertices are
-/// the other one's own.
-double bulge(const Mesh& mesh, const Mesh& from) {
-  std::vector<Vec3> middles;
-  const std::size_t step = 1 + 4 * mesh.faces.size() / kMostMeasured;
-  for (std::size_t f = 0; f < mesh.faces.size(); f += step) {
-    const auto at = [&](std::size_t k) {
-      return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];
-    };
-    middles.push_back((at(0) + at(1) + at(2)) / 3);
-    for (std::size_t k = 0; k < 3; ++k) middles.push_back((at(k) + at((k + 1) % 3)) / 2);
-  }
-  double most = 0;
-  for (const double d : distances(middles, from)) most = std::max(most, d);
-  return most;
-}
-
-/// Per vertex a number of its connected piece: the lowest vertex of it.
-std::vector<std::size_t> pieces_of(const Mesh& mesh) {
-  std::vector<std::size_t> above(mesh.vertices.size());
-  for (std::size_t v = 0; v < above.size(); ++v) above[v] = v;
-  const auto top = [&](std::size_t v) {
-    while (above[v] != v) v = above[v] = above[above[v]];
-    return v;
-  };
-  for (const Face& f : mesh.faces)
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::size_t a = top(static_cast<std::size_t>(f[0])),
-                        b = top(static_cast<std::size_t>(f[k]));
-      above[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::size_t v = 0; v < above.size(); ++v) above[v] = top(v);
-  return above;
-}
-
-/// Without pieces that are no larger than `size`, unless nothing else is there: whoever does not
-/// see them misses no more than their size, however far they are from all else. Left to the
-/// simplification, they would collapse and count with that distance.
-Work without_small(const Work& from, double size) {
-  const std::vector<std::size_t> piece = pieces_of(from.mesh);
-  std::vector<Box> boxes(piece.size());
-  std::vector<char> is_kept(piece.size(), 0);
-  for (std::size_t v = 0; v < piece.size(); ++v) {
-    boxes[piece[v]].extend(from.mesh.vertices[v]);
-    is_kept[piece[v]] |= from.is_joint[v];
-  }
-  double largest = 0;
-  std::vector<std::uint32_t> indices;
-  for (const Face& f : from.mesh.faces) {
-    const std::size_t own = piece[static_cast<std::size_t>(f[0])];
-    const double across = boxes[own].size().norm();
-    if (is_kept[own] || across > size)
-      for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
-    else
-      largest = std::max(largest, across);
-  }
-  if (indices.empty()) return from;
-  Work out = picked(from, indices);
-  out.deviation = largest;
-  return out;
-}
-
-/// Quadrics tell of means: a tip of little area goes however high it is. What is then too far off
-/// is kept, and all done again.
-Work collapsed(const Work& from, double error) {
-  const Vec3 middle = bounding_box(from.mesh.vertices).center();
-  std::vector<float> positions;
-  for (const Vec3& p : from.mesh.vertices)
-    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - middle[k]));
-  std::vector<std::uint32_t> indices;
-  for (const Face& f : from.mesh.faces)
-    for (const int v : f) indices.push_back(static_cast<std::uint32_t>(v));
-  std::vector<char> is_locked = from.is_joint;
-  Work out;
-  for (int i = 0; i < kMostKept; ++i) {
-    out = picked(from, simplify_within(positions, indices, is_locked, static_cast<float>(error)));
-    if (out.mesh.faces.empty()) return from;
-    const std::vector<double> off = distances(from.mesh.vertices, out.mesh);
-    out.deviation = *std::max_element(off.begin(), off.end());
-    if (out.deviation <= kFarthest * error) break;
-    for (std::size_t v = 0; v < off.size(); ++v) is_locked[v] |= off[v] > kFarthest * error;
-  }
-  out.deviation = std::max(out.deviation, bulge(out.mesh, from.mesh));
-  return out;
 }
 
 /// As many faces as the room for a tile has, or as its detail needs.

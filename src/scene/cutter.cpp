@@ -5,6 +5,12 @@
 
 namespace colod {
 
+namespace {
+
+constexpr double kSameOnEdge = 1e-6;  // metres
+
+}  // namespace
+
 Cutter::Cutter(const Source& from) : from_(from), number_(from.mesh.vertices.size(), -1) {
   out_.path = from.path;
   out_.look.images = from.look.images;
@@ -40,10 +46,22 @@ int Cutter::vertex(std::size_t f, const Vec3& w) {
   Vec3 p = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     p += w[k] * from_.mesh.vertices[static_cast<std::size_t>(face[static_cast<std::size_t>(k)])];
+  for (std::size_t k = 0; k < 3; ++k)
+    if (w[static_cast<int>(k)] == 0) return on_edge(face[(k + 1) % 3], face[(k + 2) % 3], p);
   const auto [at, is_new] =
       cut_.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(out_.mesh.vertices.size()));
   if (is_new) out_.mesh.vertices.push_back(p);
   return at->second;
+}
+
+/// The two faces of an edge come to one place by different ways: it is one all the same.
+int Cutter::on_edge(int a, int b, const Vec3& p) {
+  std::vector<int>& known = on_edges_[{std::min(a, b), std::max(a, b)}];
+  for (const int v : known)
+    if ((out_.mesh.vertices[static_cast<std::size_t>(v)] - p).norm() < kSameOnEdge) return v;
+  known.push_back(static_cast<int>(out_.mesh.vertices.size()));
+  out_.mesh.vertices.push_back(p);
+  return known.back();
 }
 
 void Cutter::add(std::size_t f, const Face& face, const std::array<Vec3, 3>& weights) {

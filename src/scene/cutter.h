@@ -23,6 +23,7 @@ class Cutter {
  private:
   int old_vertex(int v);
   int vertex(std::size_t f, const Vec3& weights);
+  int on_edge(int a, int b, const Vec3& p);
   void add(std::size_t f, const Face& face, const std::array<Vec3, 3>& weights);
   void add_look(std::size_t f, const std::array<Vec3, 3>& weights);
 
@@ -30,6 +31,7 @@ class Cutter {
   Source out_;
   std::vector<int> number_;  // of a vertex in the result; −1: not there
   std::map<std::array<double, 3>, int> cut_;
+  std::map<std::array<int, 2>, std::vector<int>> on_edges_;  // numbers, by the ends of the edge
 };
 
 }  // namespace colod

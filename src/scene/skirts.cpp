@@ -40,7 +40,8 @@ bool is_on_border(const Territories& territories, const Vec3& a, const Vec3& b) 
 
 class Skirts {
  public:
-  Skirts(const ClosingGround& ground, Source& s) : ground_(ground), s_(s) {}
+  Skirts(const ClosingGround& ground, Source& s, double depth)
+      : ground_(ground), s_(s), depth_(depth) {}
 
   void hang(const RimEdge& edge) {
     const std::size_t k = edge.corner, next = (k + 1) % 3;
@@ -55,7 +56,7 @@ class Skirts {
     const auto [at, is_new] = below_.try_emplace(v, static_cast<int>(s_.mesh.vertices.size()));
     if (!is_new) return at->second;
     Vec3 p = s_.mesh.vertices[static_cast<std::size_t>(v)];
-    p.z() = std::min(p.z(), ground_.lowest(p.head<2>())) - kSkirt;
+    p.z() = std::min(p.z(), ground_.lowest(p.head<2>())) - depth_;
     s_.mesh.vertices.push_back(p);
     return at->second;
   }
@@ -78,20 +79,27 @@ class Skirts {
 
   const ClosingGround& ground_;
   Source& s_;
+  double depth_;
   std::map<int, int> below_;
 };
 
 }  // namespace
 
-void add_skirts(const Territories& territories, const ClosingGround& ground, Source& cut) {
-  Skirts skirts(ground, cut);
+std::vector<char> add_skirts(const Territories& territories, const ClosingGround& ground,
+                             Source& cut, double deeper) {
+  Skirts skirts(ground, cut, kSkirt + deeper);
+  std::vector<char> is_joint(cut.mesh.vertices.size(), 0);
   for (const RimEdge& edge : rim_of(cut.mesh)) {
     const Face& face = cut.mesh.faces[edge.face];
-    const auto at = [&](std::size_t k) {
-      return cut.mesh.vertices[static_cast<std::size_t>(face[k % 3])];
-    };
-    if (is_on_border(territories, at(edge.corner), at(edge.corner + 1))) skirts.hang(edge);
+    const auto a = static_cast<std::size_t>(face[edge.corner]),
+               b = static_cast<std::size_t>(face[(edge.corner + 1) % 3]);
+    if (is_on_border(territories, cut.mesh.vertices[a], cut.mesh.vertices[b]))
+      skirts.hang(edge);
+    else
+      is_joint[a] = is_joint[b] = 1;
   }
+  is_joint.resize(cut.mesh.vertices.size(), 0);
+  return is_joint;
 }
 
 }  // namespace colod

@@ -12,10 +12,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "core/flat.h"
 #include "cutter.h"
+#include "fewer_pieces.h"
 #include "parameters.h"
+#include "reunion.h"
 
 namespace colod {
 
@@ -182,9 +185,6 @@ class Borders {
   Cdt cdt_;
 };
 
-/// A part of a face.
-using Polygon = std::vector<Vec3>;  // weights
-
 struct FlatFace {
   std::array<Vec2, 3> corners;
   Vec2 at(const Vec3& weights) const {
@@ -193,8 +193,8 @@ struct FlatFace {
 };
 
 /// What of a polygon lies to the left of a → b, and what to the right.
-void split(const FlatFace& face, const Polygon& polygon, const Vec2& a, const Vec2& b,
-           Polygon& left, Polygon& right) {
+void split(const FlatFace& face, const FacePart& polygon, const Vec2& a, const Vec2& b,
+           FacePart& left, FacePart& right) {
   left.clear(), right.clear();
   const Vec2 along = (b - a).normalized();
   std::vector<double> side;
@@ -220,10 +220,20 @@ void split(const FlatFace& face, const Polygon& polygon, const Vec2& a, const Ve
 }  // namespace
 
 struct Territories::Impl {
-  std::vector<Piece> pieces;
+  std::vector<std::vector<Piece>> fine;  // per building; all of them meet corner to corner
+  std::vector<Piece> pieces;             // the same ground in fewer
   std::vector<Box> boxes;
   std::vector<double> areas;
   Bins bins;
+
+  explicit Impl(std::size_t buildings) : fine(buildings), boxes(buildings), areas(buildings, 0) {}
+
+  /// The ground of each building in as few pieces as its borders take.
+  void settle(double tolerance) {
+    for (const std::vector<Piece>& own : fine)
+      if (!own.empty())
+        for (const Piece& piece : fewer_pieces(own, tolerance)) add(piece);
+  }
 
   void add(const Piece& piece) {
     const Vec2 low = piece.corners[0].cwiseMin(piece.corners[1]).cwiseMin(piece.corners[2]);
@@ -232,29 +242,26 @@ struct Territories::Impl {
     const auto b = static_cast<std::size_t>(piece.building);
     boxes[b].extend(Vec3(low.x(), low.y(), -INFINITY));
     boxes[b].extend(Vec3(high.x(), high.y(), INFINITY));
-    if (!piece.is_eaves)
-      areas[b] +=
-          0.5 * cross(piece.corners[1] - piece.corners[0], piece.corners[2] - piece.corners[0]);
     pieces.push_back(piece);
   }
 
   /// Parts of a face over a building's ground, or, of −1, over no one's. True: all of it is.
-  bool parts_of(const FlatFace& face, int building, std::vector<Polygon>& out) const;
+  bool parts_of(const FlatFace& face, int building, std::vector<FacePart>& out) const;
 };
 
 bool Territories::Impl::parts_of(const FlatFace& face, int building,
-                                 std::vector<Polygon>& out) const {
+                                 std::vector<FacePart>& out) const {
   const Vec2 low = face.corners[0].cwiseMin(face.corners[1]).cwiseMin(face.corners[2]);
   const Vec2 high = face.corners[0].cwiseMax(face.corners[1]).cwiseMax(face.corners[2]);
-  std::vector<Polygon> open = {{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}}, next;
-  Polygon inside, outside;
+  std::vector<FacePart> open = {{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}}, next;
+  FacePart inside, outside;
   bool is_foreign = false;  // something of it is another's
   for (const int p : bins.find(low, high)) {
     const Piece& piece = pieces[static_cast<std::size_t>(p)];
     next.clear();
-    for (Polygon& polygon : open) {
-      const Polygon whole = polygon;
-      std::vector<Polygon> rest;
+    for (FacePart& polygon : open) {
+      const FacePart whole = polygon;
+      std::vector<FacePart> rest;
       for (std::size_t e = 0; e < 3 && polygon.size() >= 3; ++e) {
         split(face, polygon, piece.corners[e], piece.corners[(e + 1) % 3], inside, outside);
         if (outside.size() >= 3) rest.push_back(outside);
@@ -277,22 +284,20 @@ bool Territories::Impl::parts_of(const FlatFace& face, int building,
     out = open;
     return !is_foreign;
   }
-  const auto is_nothing = [&](const Polygon& p) { return p.size() < 3; };
+  const auto is_nothing = [&](const FacePart& p) { return p.size() < 3; };
   open.erase(std::remove_if(open.begin(), open.end(), is_nothing), open.end());
   return open.empty() && !is_foreign;
 }
 
 Territories::Territories(const std::vector<Footprint>& footprints)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_unique<Impl>(footprints.size())) {
   std::vector<Plan> plans(footprints.begin(), footprints.end());
-  impl_->boxes.resize(plans.size());
-  impl_->areas.resize(plans.size(), 0);
   Bins near;
   for (std::size_t i = 0; i < plans.size(); ++i)
     near.add(static_cast<int>(i), plans[i].min, plans[i].max);
   const Cdt cdt = Borders(plans).triangulation();
   for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
-    Piece piece{{}, -1, true};
+    Piece piece{{}, -1};
     for (int k = 0; k < 3; ++k)
       piece.corners[static_cast<std::size_t>(k)] = {face->vertex(k)->point().x(),
                                                     face->vertex(k)->point().y()};
@@ -304,13 +309,15 @@ Territories::Territories(const std::vector<Footprint>& footprints)
       const Plan& plan = plans[static_cast<std::size_t>(i)];
       if (!plan.is_near(middle)) continue;
       if (plan.holds(middle)) {
-        piece.building = i, piece.is_eaves = false;
+        piece.building = i;
+        impl_->areas[static_cast<std::size_t>(i)] += 0.5 * cross(c[1] - c[0], c[2] - c[0]);
         break;
       }
       if (const double d = plan.distance(middle); d < least) least = d, piece.building = i;
     }
-    if (piece.building >= 0) impl_->add(piece);
+    if (piece.building >= 0) impl_->fine[static_cast<std::size_t>(piece.building)].push_back(piece);
   }
+  impl_->settle(kSame);
 }
 
 Territories::Territories(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -318,11 +325,20 @@ Territories::~Territories() = default;
 Territories::Territories(Territories&&) noexcept = default;
 
 Territories Territories::without(const std::vector<char>& is_out) const {
-  auto impl = std::make_unique<Impl>();
-  impl->boxes.resize(count());
-  impl->areas.resize(count(), 0);
-  for (const Piece& piece : impl_->pieces)
-    if (!is_out[static_cast<std::size_t>(piece.building)]) impl->add(piece);
+  auto impl = std::make_unique<Impl>(count());
+  for (std::size_t b = 0; b < count(); ++b)
+    if (!is_out[b]) impl->fine[b] = impl_->fine[b], impl->areas[b] = impl_->areas[b];
+  impl->settle(kSame);
+  return Territories(std::move(impl));
+}
+
+Territories Territories::coarser(double tolerance) const {
+  auto impl = std::make_unique<Impl>(1);
+  for (std::size_t b = 0; b < count(); ++b)
+    impl->fine[0].insert(impl->fine[0].end(), impl_->fine[b].begin(), impl_->fine[b].end());
+  for (Piece& piece : impl->fine[0]) piece.building = 0;
+  impl->areas[0] = std::accumulate(impl_->areas.begin(), impl_->areas.end(), 0.0);
+  impl->settle(tolerance);
   return Territories(std::move(impl));
 }
 
@@ -344,15 +360,16 @@ bool Territories::covers(const Vec2& p) const {
 Source Territories::cut_out(const Source& source, int building) const {
   Cutter cutter(source);
   const Mesh& mesh = source.mesh;
-  std::vector<Polygon> parts;
+  std::vector<FacePart> parts;
   const bool is_rest = building < 0;
   const Box* box = is_rest ? nullptr : &impl_->boxes[static_cast<std::size_t>(building)];
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     FlatFace flat;
+    std::array<Vec3, 3> corners;
     Box own;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];
-      flat.corners[k] = p.head<2>();
+      corners[k] = p, flat.corners[k] = p.head<2>();
       own.extend(p);
     }
     if (box &&
@@ -362,7 +379,8 @@ Source Territories::cut_out(const Source& source, int building) const {
     if (impl_->parts_of(flat, building, parts))
       cutter.add_whole(f);
     else
-      for (const Polygon& part : parts) cutter.add_part(f, part);
+      for (const auto& part : reunite(corners, parts))
+        cutter.add_part(f, {part[0], part[1], part[2]});
   }
   return cutter.take();
 }

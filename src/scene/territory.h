@@ -8,7 +8,7 @@
 
 namespace colod {
 
-/// Convex pieces of the plan, each of one building: its footprint and what lies within reach of its
+/// Triangles of the plan, each of one building: its footprint and what lies within reach of its
 /// eaves, where that is nearer to it than to any other footprint. Footprints that share a border
 /// meet there exactly; of ground that several cover the first has it.
 class Territories {
@@ -19,6 +19,9 @@ class Territories {
   Territories(Territories&&) noexcept;
   /// The same without some buildings' pieces: what was theirs is over none.
   Territories without(const std::vector<char>& is_out) const;
+  /// All of them as one building's, 0, with corners left out that are no farther off than
+  /// `tolerance`, in metres.
+  Territories coarser(double tolerance) const;
 
   std::size_t count() const;
   /// Of a building's territory; heights are infinite.
@@ -34,11 +37,10 @@ class Territories {
   /// Whether a place is some building's.
   bool covers(const Vec2& p) const;
 
-  /// The convex pieces, as triangles seen from above, and whose each is.
+  /// The triangles, seen from above, and whose each is.
   struct Piece {
     std::array<Vec2, 3> corners;  ///< counter-clockwise
     int building;
-    bool is_eaves;  ///< beyond the footprint
   };
   const std::vector<Piece>& pieces() const;
 

@@ -300,6 +300,7 @@ std::size_t SceneTiles::faces() const { return impl_->faces; }
 const std::vector<ReadFailure>& SceneTiles::failures() const { return impl_->failures; }
 const std::vector<std::string>& SceneTiles::warnings() const { return impl_->warnings; }
 
+int SceneTiles::node(std::size_t tile) const { return impl_->tiles[tile].node; }
 bool SceneTiles::is_piece(std::size_t tile) const { return impl_->tiles[tile].piece >= 0; }
 const std::shared_ptr<const HeightMap>& SceneTiles::surface() const { return impl_->surface; }
 

@@ -42,6 +42,8 @@ class SceneTiles {
   std::size_t faces() const;
   const std::vector<ReadFailure>& failures() const;  ///< of the tree, and of tiles
   const std::vector<std::string>& warnings() const;
+  /// Of the tree: the one that a tile is, or is a part of.
+  int node(std::size_t tile) const;
   /// Whether it is a part of a mesh that was too large for one tile.
   bool is_piece(std::size_t tile) const;
   /// Null where tiles are meshes.

@@ -40,7 +40,7 @@ Codes after(const std::string& glb, const Change& change) {
 class Tileset {
  public:
   Tileset() : folder_(fs::temp_directory_path() / ("colod_check_" + std::to_string(getpid()))) {
-    for (const Encoded& file : encode_tileset(street(20), {.switching = kScene}))
+    for (const Encoded& file : encode_tileset(street(16), {.switching = kScene}))
       write_file(folder_.string(), file);
     for (const ExportBuilding& b : street(3))
       write_file(folder_.string(), encode_building_glb(b, {.switching = kScene}));

@@ -1,5 +1,7 @@
 // Tilesets of tilesets: no file grows with the scene.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -8,6 +10,7 @@
 
 #include "exporters/check/check.h"
 #include "exporters/files.h"
+#include "exporters/tiles3d/standins.h"
 #include "exporters/tiles3d/tiles3d.h"
 #include "exporters_helpers.h"
 #include "temporary_folder.h"
@@ -42,10 +45,14 @@ void collect(const Files& files, const std::string& path, const Json& tile, doub
   const double error = tile["geometricError"];
   if (error >= above) FAIL_CHECK(path << ": errors do not fall");
   const std::filesystem::path base = std::filesystem::path(path).parent_path();
-  const std::string own =
-      (base / tile["content"]["uri"].get<std::string>()).lexically_normal().generic_string();
-  if (!files.contains(own) || !found.insert(own).second) FAIL(own << " is missing, or named twice");
-  if (own.ends_with(".json")) collect(files, own, Json::parse(files.at(own))["root"], error, found);
+  if (tile.contains("content")) {
+    const std::string own =
+        (base / tile["content"]["uri"].get<std::string>()).lexically_normal().generic_string();
+    if (!files.contains(own) || !found.insert(own).second)
+      FAIL(own << " is missing, or named twice");
+    if (own.ends_with(".json"))
+      collect(files, own, Json::parse(files.at(own))["root"], error, found);
+  }
   for (const Json& child : tile.value("children", Json::array()))
     collect(files, path, child, error, found);
 }
@@ -93,6 +100,69 @@ TEST_CASE("a tileset of many cells becomes a tree of files of bounded size") {
         CHECK(same * 10 > flat.size() * 8);  // all but the tiles between root and cells
     }
   }
+}
+
+TEST_CASE("whoever is far away reads nothing of single buildings, and sees a box of each early") {
+  for (const std::size_t n : {17, 40, 120, 256, 300}) {
+    std::size_t groups = 0, boxed = 0;
+    for (const Encoded& file : encode_tileset(street(static_cast<int>(n)))) {
+      const std::string name = file.path.substr(file.path.rfind('/') + 1);
+      const auto dots = std::count(name.begin(), name.end(), '.');
+      if (name.ends_with(".json")) {
+        const bool is_group = name != kTileset;
+        groups += is_group;
+        CHECK((is_group || file.bytes.find("\"layer\":") == std::string::npos));
+      } else if (n > 64 && name.starts_with("root.") && dots == 2 && name != "root.glb") {
+        const Json json = Json::parse(parse_glb(file.bytes).json.dump());
+        const int indices = json["meshes"][0]["primitives"][0]["indices"];
+        const std::size_t boxes =
+            json["accessors"][indices]["count"].get<std::size_t>() / (3 * kStandInTriangles);
+        CHECK(boxes == std::min<std::size_t>(n / 4, 64));  // one of the root's four parts
+        ++boxed;
+      }
+    }
+    CHECK(groups >= n / 16);
+    CHECK(boxed == (n > 64 ? 4 : 0));
+  }
+}
+
+TEST_CASE("files of a place's tiles are small, and the first names few of them") {
+  for (const int depth : {1, 2, 3, 5})
+    for (const std::size_t shown_from : {0, 1}) {  // the top may show nothing
+      ContextTiles place{{{}}, [&](std::size_t i) {
+                           ContextMesh mesh;
+                           if (i < shown_from) return mesh;
+                           const double x = 3.0 * static_cast<double>(i);
+                           mesh.mesh.vertices = {{x, 0, 0}, {x + 2, 0, 0}, {x, 2, 0}};
+                           mesh.mesh.faces = {{0, 1, 2}};
+                           mesh.face_image = {-1};
+                           mesh.uvs.resize(1), mesh.colors.resize(1);
+                           return mesh;
+                         }};
+      std::size_t first = 0;
+      for (int level = 0; level < depth; ++level) {
+        const std::size_t end = place.nodes.size();
+        for (; first < end; ++first)
+          for (int k = 0; k < 4; ++k)
+            place.nodes.push_back({static_cast<int>(first), std::exp2(depth - level), k == 3});
+      }
+      const TemporaryFolder folder;
+      const std::vector<Encoded> encoded =
+          encode_tileset(street(3), {.compression = Compression::kNone, .context = &place});
+      for (const Encoded& file : encoded) write_file(folder.path().string(), file);
+      for (const Finding& f : check_output(folder.path().string()))
+        FAIL_CHECK(f.code << " " << f.where << " " << f.message);
+      const Files files(encoded);
+      std::set<std::string> found = {kTileset};
+      collect(files, kTileset, Json::parse(files.at(kTileset))["root"], 1e300, found);
+      CHECK(found.size() == files.size());
+      std::size_t glbs = 0;
+      for (const std::string& path : found) {
+        glbs += path.starts_with("tiles/context/") && path.ends_with(".glb");
+        if (path.ends_with(".json")) CHECK(entries_of(Json::parse(files.at(path))["root"]) < 110);
+      }
+      CHECK(glbs == place.nodes.size() - shown_from);
+    }
 }
 
 TEST_CASE("a tree of tilesets is sound, and on Earth as well") {

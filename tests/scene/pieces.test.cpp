@@ -186,6 +186,26 @@ TEST_CASE("a coarse tile wears one image with texels as large as pixels, of what
   }
 }
 
+TEST_CASE("where charts would take more room than their image a coarse tile wears all of it") {
+  const double larger = GENERATE(1.1, 1.25, 3.0);
+  constexpr int kParts = 64;  // charts of four pixels
+  const TemporaryFolder folder;
+  const Source before = checkered(write_image(folder), kParts, 1);
+  Source after = before;
+  const CoarseImages coarse(std::size_t{1} << 26);
+  coarse.give(after, larger * kParts / 256);
+  const Material& material =
+      after.look.materials[static_cast<std::size_t>(after.look.face_material[0])];
+  REQUIRE(material.image == 1);
+  const ImageCache cache(std::size_t{1} << 26);
+  const ImageCache::Facts facts = cache.facts(after.look.images[1]);
+  CAPTURE(larger, facts.width, facts.height);
+  CHECK(std::max(facts.width, facts.height) <= 256 / larger + 2 + 3 + 1);  // rim, and up to fours
+  CHECK(std::min(facts.width, facts.height) >= 256 / larger);
+  for (int f = 0; f < static_cast<int>(before.mesh.faces.size()); f += 7)
+    CHECK((seen(before, f) - seen(after, f)).matrix().norm() < 0.06);
+}
+
 TEST_CASE("a coarse tile whose images are no finer than pixels, tinted or lost keeps them") {
   const TemporaryFolder folder;
   const std::string image = write_image(folder);

@@ -2,6 +2,8 @@
 #include "scene/territory.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
 
 #include "scene/tiles.h"
 #include "scenes.h"
@@ -21,6 +23,19 @@ Source level_ground(double side, double step) {
   Source s;
   s.mesh = terrain_with_boxes(side, step, {});
   return s;
+}
+
+/// Whose ground a place is; −1: no one's.
+int owner(const Territories& t, const Vec2& p) {
+  for (const Territories::Piece& piece : t.pieces()) {
+    bool is_inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 &a = piece.corners[k], &b = piece.corners[(k + 1) % 3];
+      is_inside &= (b - a).x() * (p - a).y() >= (b - a).y() * (p - a).x();
+    }
+    if (is_inside) return piece.building;
+  }
+  return -1;
 }
 
 Box box_of(const Source& s) { return bounding_box(s.mesh.vertices); }
@@ -43,20 +58,31 @@ TEST_CASE("faces are cut exactly at the border that two footprints share") {
         Approx(1600).epsilon(1e-9));
 }
 
+TEST_CASE("a building's ground is in few pieces, whatever stands around it") {
+  std::vector<Footprint> rows;
+  for (int k = 0; k < 12; ++k) rows.push_back(square(9 * k, 0, 9, 10, std::to_string(k)));
+  rows.push_back(square(40, 12.5, 20, 8, "beyond"));
+  const Territories t(rows);
+  std::vector<int> count(rows.size());
+  for (const Territories::Piece& p : t.pieces()) ++count[static_cast<std::size_t>(p.building)];
+  for (std::size_t b = 0; b < rows.size(); ++b) CHECK(count[b] < 24);
+  CHECK(t.coarser(0.001).pieces().size() < 48);  // the row is one
+  CHECK(t.coarser(0.5).pieces().size() < t.coarser(0.001).pieces().size());
+  for (const auto& [x, y] : {std::array{4.0, 5.0}, {50.0, 16.0}, {50.0, 11.0}, {109.4, 5.0}}) {
+    CHECK(t.covers({x, y}));
+    CHECK(t.coarser(0.001).covers({x, y}));
+  }
+  CHECK_FALSE(t.coarser(0.001).covers({10, 12}));
+  CHECK(t.coarser(0.001).area(0) == Approx(12 * 90 + 160));
+}
+
 TEST_CASE("between footprints that stand close the middle of the gap is the border") {
   const Source ground = level_ground(40, 8);
   const Territories t({square(10, 10, 9, 10, "a"), square(20, 10, 9, 10, "b")});
   for (const double y : {12.0, 15.0, 18.0}) {
     INFO(y);
-    const auto reach = [&](int b) {
-      Box box;
-      for (const Territories::Piece& p : t.pieces())
-        for (const Vec2& c : p.corners)
-          if (p.building == b && std::abs(c.y() - y) < 4) box.extend(Vec3(c.x(), c.y(), 0));
-      return box;
-    };
-    CHECK(reach(0).max.x() == Approx(19.5).margin(0.01));
-    CHECK(reach(1).min.x() == Approx(19.5).margin(0.01));
+    CHECK(owner(t, {19.49, y}) == 0);
+    CHECK(owner(t, {19.51, y}) == 1);
   }
 }
 
@@ -98,6 +124,41 @@ TEST_CASE("upright walls on a border go to one side only, and textures go along"
         CHECK((part->look.uvs[f][k] - p.head<2>().cast<float>() / 100).norm() < 1e-5f);
       }
   }
+}
+
+TEST_CASE("what is left of faces hangs together, in few faces, with a rim at the border alone") {
+  const double step = GENERATE(1.0, 2.5, 8.0);
+  const double turn = GENERATE(0.05, 0.3, 1.1);
+  Footprint f = square(-9, -6, 18, 12);
+  f.parts[0][0] = {{-9, -6}, {9, -6}, {9, 6}, {2, 6}, {2, 1}, {-9, 1}};  // an L
+  for (Vec2& p : f.parts[0][0])
+    p = Vec2(20 + std::cos(turn) * p.x() - std::sin(turn) * p.y(),
+             20 + std::sin(turn) * p.x() + std::cos(turn) * p.y());
+  const Territories t({f, square(3, 3, 2, 2, "shed")});
+  Source ground = level_ground(40, step);
+  for (Vec3& p : ground.mesh.vertices) p.z() = 0.1 * p.x() + std::sin(p.x()) + std::cos(p.y() / 2);
+  ground = joined({ground});
+  const Source rest = t.cut_out(ground, -1);
+  CAPTURE(step, turn, ground.mesh.faces.size(), rest.mesh.faces.size());
+  double inside = 0;
+  for (int b = 0; b < 2; ++b) inside += surface_area(t.cut_out(ground, b).mesh);
+  CHECK(surface_area(rest.mesh) + inside == Approx(surface_area(ground.mesh)).epsilon(1e-6));
+  CHECK(rest.mesh.faces.size() < 1.3 * ground.mesh.faces.size() + 60);
+  std::map<std::array<int, 2>, int> uses;
+  for (const Face& face : rest.mesh.faces)
+    for (std::size_t k = 0; k < 3; ++k)
+      ++uses[{std::min(face[k], face[(k + 1) % 3]), std::max(face[k], face[(k + 1) % 3])}];
+  int inner = 0;
+  for (const auto& [edge, count] : uses) {
+    if (count == 2) continue;
+    REQUIRE(count == 1);
+    const Vec2 a = rest.mesh.vertices[static_cast<std::size_t>(edge[0])].head<2>(),
+               b = rest.mesh.vertices[static_cast<std::size_t>(edge[1])].head<2>();
+    const Vec2 middle = (a + b) / 2, aside = 1e-4 * Vec2(a.y() - b.y(), b.x() - a.x()).normalized();
+    const bool is_rim = middle.minCoeff() < 1e-9 || middle.maxCoeff() > 40 - 1e-9;
+    inner += !is_rim && t.covers(middle + aside) == t.covers(middle - aside);
+  }
+  CHECK(inner == 0);
 }
 
 TEST_CASE("of ground that two footprints cover the first has it") {
