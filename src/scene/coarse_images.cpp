@@ -13,8 +13,10 @@ namespace colod {
 
 namespace {
 
-constexpr double kWorth = 0.9;      // of the texels: of what is more they stay
-constexpr int kRim = 1;             // texels around a chart
+constexpr double kWorth = 0.9;  // of the texels: of what is more they stay …
+constexpr double kMostlyBare =
+    0.75;                // … but for images of which less is worn: the rest costs no byte
+constexpr int kRim = 1;  // texels around a chart
 constexpr double kTouching = 0.45;  // pixels between a triangle and the middle of one that it wears
 constexpr double kLeastPixels = 1e-6;
 
@@ -75,11 +77,15 @@ void mark(std::array<Vec2f, 3> p, int width, int height, std::vector<char>& is_w
     }
 }
 
-/// Images that are seen through stay, so that what is wholly transparent lies beside the charts.
-std::vector<char> worn_pixels(const Source& source, const Moving& m, const Raster& raster) {
-  std::vector<char> is_worn(static_cast<std::size_t>(raster.width) * raster.height, 0);
+std::vector<char> worn_pixels(const Source& source, const Moving& m) {
+  std::vector<char> is_worn(static_cast<std::size_t>(m.width) * m.height, 0);
   for (const std::size_t f : m.worn.faces)
     mark(in_pixels(source.look.uvs[f], m.width, m.height), m.width, m.height, is_worn);
+  return is_worn;
+}
+
+/// Images that are seen through stay, so that what is wholly transparent lies beside the charts.
+std::vector<char> without_clear(std::vector<char> is_worn, const Raster& raster) {
   for (std::size_t i = 0; i < raster.alpha.size(); ++i)
     if (raster.alpha[i] == 0) is_worn[i] = 0;
   return is_worn;
@@ -153,8 +159,8 @@ std::vector<char> plain_images(const Appearance& look) {
   return is_plain;
 }
 
-/// `texels`: of the images as they are.
-Packing pack(const std::vector<Moving>& moving, double texels) {
+/// None where it would take more than so many texels.
+Packing pack(const std::vector<Moving>& moving, double most) {
   Packing out;
   double own = 0;
   for (const Moving& m : moving)
@@ -162,9 +168,9 @@ Packing pack(const std::vector<Moving>& moving, double texels) {
       out.rects.push_back(rect_of(c.width + 2 * kRim, c.height + 2 * kRim));
       own += static_cast<double>(out.rects.back().width) * out.rects.back().height;
     }
-  if (out.rects.size() > kMostCharts || own > kWorth * texels) return {};
+  if (out.rects.size() > kMostCharts || own > most) return {};
   out.size = pack_rects(out.rects, kLargestOwn);
-  if (static_cast<double>(out.size[0]) * out.size[1] > kWorth * texels) return {};
+  if (static_cast<double>(out.size[0]) * out.size[1] > most) return {};
   return out;
 }
 
@@ -192,6 +198,15 @@ void join_charts(const Source& source, double texel, std::vector<Moving>& moving
     std::fill(m.worn.chart.begin(), m.worn.chart.end(), 0);
     m.sizes = {size_of(m.worn.charts[0], std::min(1.0, own_texels(source, m)[0] / texel))};
   }
+}
+
+double worn_texels(const Source& source, const std::vector<Moving>& moving) {
+  double sum = 0;
+  for (const Moving& m : moving) {
+    const std::vector<char> is_worn = worn_pixels(source, m);
+    sum += static_cast<double>(std::count(is_worn.begin(), is_worn.end(), 1));
+  }
+  return sum;
 }
 
 }  // namespace
@@ -236,7 +251,7 @@ Raster CoarseImages::Impl::draw_all(const Source& source, const std::vector<Movi
     const ImageCache::Entry entry = images.get(m.place);
     if (!entry.pyramid) return {};  // it was there a moment ago
     const Raster& raster = entry.pyramid->levels[0];
-    const std::vector<char> is_worn = worn_pixels(source, m, raster);
+    const std::vector<char> is_worn = without_clear(worn_pixels(source, m), raster);
     for (std::size_t c = 0; c < m.sizes.size(); ++c) {
       const Raster chart = resampled(raster, is_worn, m.worn.charts[c], m.sizes[c]);
       copy_chart(chart, {0, 0, chart.width, chart.height}, packing.rects[first + c], out);
@@ -250,10 +265,11 @@ void CoarseImages::give(Source& source, double texel) const {
   std::vector<Moving> moving = impl_->moving(source, texel);
   double texels = 0;
   for (const Moving& m : moving) texels += static_cast<double>(m.width) * m.height;
-  Packing packing = pack(moving, texels);
+  Packing packing = pack(moving, kWorth * texels);
   if (packing.size[0] == 0) {
     join_charts(source, texel, moving);
-    packing = pack(moving, texels);
+    packing =
+        pack(moving, (worn_texels(source, moving) < kMostlyBare * texels ? 1 : kWorth) * texels);
   }
   if (packing.size[0] == 0) return;
   const Raster raster = impl_->draw_all(source, moving, packing);

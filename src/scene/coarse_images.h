@@ -18,8 +18,8 @@ class CoarseImages {
   /// The charts that faces wear move into one JPEG, each as it is or, where its texels are finer
   /// than `texel` in the mean, as small as makes them so; what nobody wears has no part in a mean.
   /// Where charts would take more room than their images these are one chart each. The source is
-  /// left as it is where that saves less than a tenth of its texels, and so is an
-  /// image that is transparent, tinted, repeated or cannot be decoded. `texel`: metres.
+  /// left as it is where that saves less than a tenth of its texels and most of them are worn; so
+  /// is an image that is transparent, tinted, repeated or cannot be decoded. `texel`: metres.
   /// Thread-safe.
   void give(Source& source, double texel) const;
 

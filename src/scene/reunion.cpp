@@ -21,13 +21,13 @@ using UnionData =
     CGAL::Triangulation_data_structure_2<UnionVertex,
                                          CGAL::Constrained_triangulation_face_base_2<UnionKernel>>;
 using UnionCdt = CGAL::Constrained_Delaunay_triangulation_2<UnionKernel, UnionData,
-                                                       CGAL::No_constraint_intersection_tag>;
+                                                            CGAL::No_constraint_intersection_tag>;
 using PartTriangles = std::vector<std::array<Vec3, 3>>;
 
-constexpr double kSamePlace = 1e-7;     // metres: nearer points are one, and on an edge
-constexpr double kAreaOff = 1e-5;  // m²: what comes out may differ by so much, and …
-constexpr double kShareOff = 1e-6;  // … by this share
-constexpr double kFlatFace = 1e-9;  // m²: of less it cannot be told where parts lie
+constexpr double kSamePlace = 1e-7;  // metres: nearer points are one, and on an edge
+constexpr double kAreaOff = 1e-5;    // m²: what comes out may differ by so much, and …
+constexpr double kShareOff = 1e-6;   // … by this share
+constexpr double kFlatFace = 1e-9;   // m²: of less it cannot be told where parts lie
 
 /// A face in its own plane, counter-clockwise.
 class FacePlane {
@@ -98,7 +98,8 @@ class FaceUnion {
   double area_of(const std::vector<int>& polygon) const {
     double sum = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-      sum += cross(place(polygon[i]) - place(polygon[0]), place(polygon[i + 1]) - place(polygon[0]));
+      sum +=
+          cross(place(polygon[i]) - place(polygon[0]), place(polygon[i + 1]) - place(polygon[0]));
     return sum / 2;
   }
 
@@ -177,7 +178,8 @@ class FaceUnion {
 PartTriangles fans(const std::vector<FacePart>& parts) {
   PartTriangles out;
   for (const FacePart& part : parts)
-    for (std::size_t k = 1; k + 1 < part.size(); ++k) out.push_back({part[0], part[k], part[k + 1]});
+    for (std::size_t k = 1; k + 1 < part.size(); ++k)
+      out.push_back({part[0], part[k], part[k + 1]});
   return out;
 }
 

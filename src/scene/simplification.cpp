@@ -125,8 +125,7 @@ Corners::Corners(const Source& source, const std::vector<char>& is_joint) {
     Face face;
     for (std::size_t k = 0; k < 3; ++k) {
       const Corner corner = corner_of(source, f, k);
-      const auto [at, is_new] =
-          numbers.try_emplace(corner.key(), static_cast<int>(looks.size()));
+      const auto [at, is_new] = numbers.try_emplace(corner.key(), static_cast<int>(looks.size()));
       face[k] = at->second;
       if (!is_new) continue;
       const auto v = static_cast<std::size_t>(corner.vertex);
@@ -200,8 +199,8 @@ Work collapsed(const Work& from, double error) {
   std::vector<char> is_locked = from.is_joint;
   Work out;
   for (int i = 0; i < kMostKept; ++i) {
-    out = picked(from, simplify_within(mesh.positions, mesh.indices, is_locked,
-                                       static_cast<float>(error)));
+    out = picked(
+        from, simplify_within(mesh.positions, mesh.indices, is_locked, static_cast<float>(error)));
     if (out.mesh.faces.empty()) return from;
     const std::vector<double> off = distances(from.mesh.vertices, out.mesh);
     out.deviation = *std::max_element(off.begin(), off.end());
