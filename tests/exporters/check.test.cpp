@@ -182,6 +182,22 @@ TEST_CASE("faults of boxes and trees") {
   }
 }
 
+TEST_CASE("what light falls on has normals") {
+  const std::string glb =
+      encode_building_glb(street(1)[0], {.compression = Compression::kNone}).bytes;
+  CHECK(check(glb) == Codes{});
+  const auto bare = [](bool is_unlit) {
+    return [is_unlit](Json& json, std::string&) {
+      for (Json& mesh : json["meshes"])
+        for (Json& primitive : mesh["primitives"]) primitive["attributes"].erase("NORMAL");
+      for (Json& material : json["materials"])
+        if (is_unlit) material["extensions"]["KHR_materials_unlit"] = Json::object();
+    };
+  };
+  CHECK(after(glb, bare(false)) == Codes{"normals"});
+  CHECK(after(glb, bare(true)) == Codes{});
+}
+
 TEST_CASE("a tile is as large as all its primitives, each of which is looked at") {
   for (const int images : {0, 1, 3}) {
     const ContextTiles place = place_with(images);
