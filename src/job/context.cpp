@@ -25,6 +25,7 @@ constexpr double kFinest = 2048;        // pixels along a square of ground, at m
 constexpr double kFlat = 0.05;          // metres: ground that nobody has seen needs no finer detail
 constexpr double kStraight = 1e-3;      // metres: a corner that is off by less is none
 constexpr double kRounding = 1.0 / 16;  // of a texel: such tiles fit their neighbours no better
+constexpr double kOff = 0.25;           // of a texel: so far faces may be off, for pictures to stay
 constexpr double kDeeper = 2;           // times what a rim may move
 constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decoded images
 
@@ -187,7 +188,7 @@ class Nodes {
       nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
                         tree[i].geometric_error, tree[i].is_added, kRounding * texel});
       read_.push_back([place, options, images, closed, texel, i] {
-        Source shown = read_node(*place, i, (*closed)[i], texel, options);
+        Source shown = read_node(*place, i, (*closed)[i], kOff * texel, options);
         if (texel > 0) images->give(shown, texel);
         return shown;
       });

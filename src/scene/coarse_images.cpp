@@ -233,7 +233,7 @@ std::vector<Moving> CoarseImages::Impl::moving(const Source& source, double texe
     const ImageCache::Facts facts = images.facts(source.look.images[i]);
     if (facts.width == 0 || facts.is_lost) continue;
     Moving m{source.look.images[i], facts.width, facts.height, std::move(worn[i]), {}};
-    find_charts(source, m.width, m.height, m.worn);
+    find_charts(source, m.width, m.height, 0, m.worn);  // they get a rim of their own
     const std::vector<double> own = own_texels(source, m);
     for (std::size_t c = 0; c < own.size(); ++c)
       m.sizes.push_back(size_of(m.worn.charts[c], std::min(1.0, own[c] / texel)));
@@ -284,7 +284,8 @@ void CoarseImages::give(Source& source, double texel) const {
   material.image = static_cast<int>(look.images.size());
   material.wrap_u = material.wrap_v = Wrap::kClamp;
   look.materials.push_back(material);
-  const std::string bytes = encode_image(raster, ImageFormat::kJpeg, parameters::context::kQuality);
+  const std::string bytes =
+      encode_image(raster, ImageFormat::kJpeg, parameters::context::kCoarseQuality);
   look.images.push_back({impl_->file.path(), impl_->file.append(bytes), bytes.size(), false, 0, 0});
 }
 

@@ -11,8 +11,6 @@ namespace colod {
 
 namespace {
 
-constexpr int kMargin = 2;  // pixels around a chart, that filters look at
-
 bool is_inside(const std::array<Vec2f, 3>& uvs) {
   constexpr float kSlack = 1e-4f;
   return std::all_of(uvs.begin(), uvs.end(), [](const Vec2f& uv) {
@@ -39,7 +37,7 @@ std::vector<Worn> worn_by_image(const Source& source) {
   return worn;
 }
 
-void find_charts(const Source& source, int width, int height, Worn& worn) {
+void find_charts(const Source& source, int width, int height, int margin, Worn& worn) {
   UnionFind sets(worn.faces.size());
   std::map<std::array<float, 2>, int> first;
   for (std::size_t i = 0; i < worn.faces.size(); ++i)
@@ -58,13 +56,15 @@ void find_charts(const Source& source, int width, int height, Worn& worn) {
       boxes[static_cast<std::size_t>(at->second)].extend(
           Vec3(uv.x() * static_cast<float>(width), uv.y() * static_cast<float>(height), 0));
   }
+  const auto along = [margin](double least, double most, int pixels) {
+    const int from = std::clamp(static_cast<int>(least) - margin, 0, pixels - 1);
+    const int to = std::min(pixels, static_cast<int>(std::ceil(most)) + margin);
+    return std::array{from, std::max(1, to - from)};
+  };
   for (const Box& box : boxes) {
-    const auto from = [](double v) { return std::max(0, static_cast<int>(v) - kMargin); };
-    const int x = from(box.min.x()), y = from(box.min.y());
-    const auto to = [](double v, int most) {
-      return std::min(most, static_cast<int>(std::ceil(v)) + kMargin);
-    };
-    worn.charts.push_back({x, y, to(box.max.x(), width) - x, to(box.max.y(), height) - y});
+    const auto [x, columns] = along(box.min.x(), box.max.x(), width);
+    const auto [y, rows] = along(box.min.y(), box.max.y(), height);
+    worn.charts.push_back({x, y, columns, rows});
   }
 }
 

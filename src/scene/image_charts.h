@@ -29,9 +29,9 @@ struct Worn {
 /// By image; faces alone.
 std::vector<Worn> worn_by_image(const Source& source);
 
-/// Charts hang together where their faces have a place in the image in common; with a margin that
-/// filters look at. `width`, `height`: pixels of the image.
-void find_charts(const Source& source, int width, int height, Worn& worn);
+/// Charts hang together where their faces have a place in the image in common. `width`, `height`:
+/// pixels of the image; `margin`: as many around each chart, where the image has them.
+void find_charts(const Source& source, int width, int height, int margin, Worn& worn);
 
 /// As large as that and at most three pixels more each way, for packing.
 PackedRect rect_of(int width, int height);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kWorth = 0.5;   // of an image's pixels: of what is more it stays
 constexpr int kOwnQuality = 92;  // of JPEG, which was one before
+constexpr int kMargin = 2;       // pixels around a chart, that filters look at
 
 }  // namespace
 
@@ -28,7 +29,7 @@ void OwnImages::Impl::shrink(Source& source, std::size_t image, Worn worn) {
   ImagePlace& place = source.look.images[image];
   const ImageCache::Facts facts = images.facts(place);
   if (facts.width == 0 || facts.is_lost) return;
-  find_charts(source, facts.width, facts.height, worn);
+  find_charts(source, facts.width, facts.height, kMargin, worn);
   std::vector<PackedRect> rects;
   for (const Chart& c : worn.charts) rects.push_back(rect_of(c.width, c.height));
   if (rects.size() > kMostCharts) return;

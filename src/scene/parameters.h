@@ -218,11 +218,12 @@ constexpr double kLeastHole = 12;  // m², of a courtyard
 namespace colod::parameters::context {
 
 constexpr std::size_t kMostChildren = 4;
-constexpr double kLargestPicture = 2048;    // pixels a side: 12 MiB while it is drawn, times cells
-constexpr int kSmallPicture = 512;          // pixels a side: a whole place, seen from afar
-constexpr int kCellsAPixel = 2;             // along each side: thin things do not flicker
-constexpr int kQuality = 85;                // of JPEG, as bakes have it
-constexpr double kLeastTexel = 0.01;        // metres: what a drone sees
+constexpr double kLargestPicture = 2048;  // pixels a side: 12 MiB while it is drawn, times cells
+constexpr int kSmallPicture = 512;        // pixels a side: a whole place, seen from afar
+constexpr int kCellsAPixel = 2;           // along each side: thin things do not flicker
+constexpr int kQuality = 85;              // of JPEG, as bakes have it
+constexpr int kCoarseQuality = 75;    // … of a source's coarse tiles, which were packed before
+constexpr double kLeastTexel = 0.01;  // metres: what a drone sees
 constexpr std::size_t kMostFaces = 60'000;  // of a coarser tile: what a client draws at once
 constexpr std::size_t kFewFaces = 20'000;   // … of the coarsest
 constexpr int kMostRelaxed = 8;             // times the error is doubled for it

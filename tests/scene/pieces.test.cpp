@@ -182,7 +182,7 @@ TEST_CASE("a coarse tile wears one image with texels as large as pixels, of what
   for (int f = 0; f < static_cast<int>(before.mesh.faces.size()); ++f) {
     const Light a = seen(before, f), b = seen(after, f);
     INFO(f << ": " << a.transpose() << " and " << b.transpose());
-    CHECK((a - b).matrix().norm() < 0.06);
+    CHECK((a - b).matrix().norm() < 0.1);  // loud neighbours, and JPEG
   }
 }
 
