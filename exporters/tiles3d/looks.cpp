@@ -2,6 +2,7 @@
 #include "looks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "image/packing.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr Rgb kPlain = {231, 231, 231};  // the plain material's 0.8 of light
 constexpr int kBlock = 4;                // texels a side: what a building without texture takes
 constexpr double kFaces = 0.5;           // cosine between a stand-in's side and what it stands for
+constexpr double kLeastPixels = 16;      // of a triangle that tells how large texels are
 
 /// Light times area, and the area.
 using Sum = Eigen::Vector4d;
@@ -74,6 +76,31 @@ Raster swatch(const LevelLook& look) {
   return plain;
 }
 
+/// Metres along a side of a texel of what a part wears, by its finest triangle: charts are not
+/// distorted, and those that nobody saw are small. Infinite: none tells.
+double texel_of(const TilePart& part) {
+  const LevelLook& look = part.level->look;
+  const std::vector<Vec3>& at = part.mesh->vertices;
+  const double pixels = static_cast<double>(look.width) * look.height;
+  double least = INFINITY;
+  for (std::size_t t = 0; t < look.uvs.size(); ++t) {
+    const Vec2f a = look.uvs[t][1] - look.uvs[t][0], b = look.uvs[t][2] - look.uvs[t][0];
+    const double own = 0.5 * pixels * std::abs(a.x() * b.y() - a.y() * b.x());
+    if (own < kLeastPixels) continue;
+    const Face& f = part.mesh->triangles[t];
+    const double area = 0.5 * (at[f[1]] - at[f[0]]).cross(at[f[2]] - at[f[0]]).norm();
+    if (area > 0) least = std::min(least, std::sqrt(area / own));
+  }
+  return least;
+}
+
+/// What a part wears, halved as often as leaves no texel larger than `pixel`, in metres.
+Raster as_seen(const TilePart& part, double pixel) {
+  Raster image = swatch(part.level->look);
+  for (double texel = texel_of(part); 2 * texel <= pixel; texel *= 2) image = halve(image);
+  return image;
+}
+
 int blocks(int texels) { return (texels + kBlock - 1) / kBlock * kBlock; }
 
 /// A building's image in the tile's, and its coordinates there; the rest of its last blocks is like
@@ -115,12 +142,15 @@ std::array<int, 2> fit(std::vector<Raster>& images, std::vector<PackedRect>& rec
 }
 
 TileLook shared(const PlannedTile& tile, int largest) {
+  double pixel = 0;  // what each covers from where finer tiles take this one's place on
+  for (const TilePart& part : tile.parts)
+    if (!tile.is_finest) pixel = std::max(pixel, part.gsd);
   std::vector<Raster> images;
   const LevelLook* first = nullptr;
   for (const TilePart& part : tile.parts) {
     const LevelLook& own = part.level->look;
     if (own.has_texture() && own.raster.rgb.empty()) return colored(tile, level_colors);
-    images.push_back(swatch(own));
+    images.push_back(as_seen(part, pixel));
     if (own.has_texture() && !first) first = &own;
   }
   std::vector<PackedRect> rects;

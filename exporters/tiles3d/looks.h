@@ -23,9 +23,10 @@ struct CoarsestLook {
 CoarsestLook coarsest_look(const ExportLevel& coarsest);
 
 /// Of a tile that shows buildings' levels, which are there. Buildings without appearance are grey
-/// beside others. Atlases of a group that do not fit into one of `largest` texels a side are halved
-/// until they do; its facets have one colour each where not even a block of texels for each
-/// building fits.
+/// beside others. Where finer tiles take its place no texel needs to be finer than a
+/// pixel is from there on: a building that looks the same on all levels wears less of its image.
+/// Atlases of a group that do not fit into one of `largest` texels a side are halved until they do;
+/// its facets have one colour each where not even a block of texels for each building fits.
 TileLook look_of_levels(const PlannedTile& tile, int largest);
 
 /// Of a tile that shows stand-ins: asks for each building's coarsest level, in rising order.

@@ -186,6 +186,42 @@ TEST_CASE(
   CHECK(groups == 1);
 }
 
+TEST_CASE("a building that looks the same on all levels wears no more in its group than is seen") {
+  const int side = GENERATE(64, 128, 512, 1024);  // texels of 0.31 m, 0.16 m … of its image
+  std::vector<ExportBuilding> buildings;
+  for (const ExportBuilding& b : street(6)) buildings.push_back(dressed(b));
+  ExportBuilding& plain = buildings[3];
+  plain.levels.erase(plain.levels.begin(), plain.levels.end() - 1);
+  plain.levels[0].layers = {0, 1, 2};
+  LevelLook& look = plain.levels[0].look;
+  look.raster = Raster(side, side);
+  std::fill(look.raster.rgb.begin(), look.raster.rgb.end(), std::uint8_t{50});
+  look.width = look.height = side;
+  look.image = encode_image(look.raster, look.format, 90);
+  int groups = 0, own = 0;
+  for (const Encoded& file : encode_tileset(buildings)) {
+    if (!file.path.ends_with(".glb")) continue;
+    const Glb glb = parse_glb(file.bytes);
+    const auto& table = glb.json["extensions"]["EXT_structural_metadata"]["propertyTables"][0];
+    if (!glb.json.contains("images")) continue;
+    const TemporaryFolder folder;
+    const Source s = written(folder, {{"tile.glb", file.bytes}});
+    const ImageCache images(std::size_t{1} << 28);
+    const ImageCache::Facts facts = images.facts(s.look.images.at(0));
+    CAPTURE(side, file.path, facts.width, facts.height);
+    if (table["count"] == 6) {
+      ++groups;  // pixels of 0.6 m: each has 64 texels a side
+      CHECK(facts.width * facts.height <= 8 * kSide * kSide);
+      CHECK(std::abs(shade(s) - 50) <= 1);
+    } else if (file.path.find(plain.name + ".layer") != std::string::npos) {
+      ++own;
+      CHECK(facts.width == side);
+    }
+  }
+  CHECK(groups == 1);
+  CHECK(own == 1);
+}
+
 TEST_CASE("atlases of a group that do not fit into one are halved until they do") {
   std::vector<ExportBuilding> buildings;
   for (const ExportBuilding& b : street(6)) buildings.push_back(dressed(b));
