@@ -57,7 +57,7 @@ test('3DTilesRendererJS flies in from far to near, and picks a building', async 
 });
 
 test('CesiumJS follows external tilesets to 300 houses', async () => {  // 3DTilesRendererJS does in the viewer's test
-  const picked = await flyIn('cesium', 'street', 'cesium-street', [['far', 30000], ['middle', 5000], ['near', 60]]);
+  const picked = await flyIn('cesium', 'street', 'cesium-street', [['far', 30000], ['middle', 500], ['near', 60]]);
   assert.match(picked?.name ?? '', /^b\d+$/);
 });
 
