@@ -397,8 +397,8 @@ TEST_CASE("a 3tz holds every file, and its index leads to each by the MD5 of its
   REQUIRE(name != zip.npos);
   const std::string index = zip.substr(name + 15, 48);
   // md5("tileset.json") as md5sum says
-  const unsigned char kTileset[] = {0xc0, 0x9b, 0xde, 0xa7};
-  const std::size_t at = index.find(std::string(reinterpret_cast<const char*>(kTileset), 4));
+  const unsigned char digest[] = {0xc0, 0x9b, 0xde, 0xa7};
+  const std::size_t at = index.find(std::string(reinterpret_cast<const char*>(digest), 4));
   REQUIRE(at % 24 == 0);
   CHECK(u32(index, at + 16) == 0);  // the first local header
   CHECK(u32(zip, u32(index, 24 - at + 16)) == 0x04034b50);
