@@ -188,8 +188,28 @@ Components connected_components(const Items& items) {
   return c;
 }
 
-/// Adds to the kept components those that come near a kept one, round by round.
-void keep_close_ones(const Items& items, const Components& components, std::vector<char>& is_kept) {
+/// Per component: whether it is a small one that hangs in the air, as reconstructions leave them
+/// around antennas, wires and in front of the sky.
+std::vector<char> hanging_ones(const Items& items, const Components& components, double total) {
+  std::vector<double> lowest(components.area.size(), INFINITY);
+  double foot = INFINITY;
+  for (int i = 0; i < items.size(); ++i) {
+    const int c = components.of_item[i];
+    if (c < 0) continue;
+    lowest[c] = std::min(lowest[c], items.center[i].z());
+    foot = std::min(foot, items.center[i].z());
+  }
+  const double most = std::min(kHangingArea, kHangingShare * total);
+  std::vector<char> out;
+  for (std::size_t c = 0; c < lowest.size(); ++c)
+    out.push_back(components.area[c] < most && lowest[c] > foot + kHangingHeight);
+  return out;
+}
+
+/// Adds to the kept components those that come near a kept one, round by round. `reach`: metres,
+/// per component.
+void keep_close_ones(const Items& items, const Components& components,
+                     const std::vector<double>& reach, std::vector<char>& is_kept) {
   const Mesh& mesh = items.source->mesh;
   constexpr int kRounds = 6;
   std::vector<char> is_new = is_kept;
@@ -211,7 +231,7 @@ void keep_close_ones(const Items& items, const Components& components, std::vect
           std::array<Vec3, 3> corner;
           const int n = items.corners(open[k], corner);
           for (int j = 0; j < n && !is_close[k]; ++j)
-            is_close[k] = scene.nearest(corner[j]).distance <= kFloaterDistance;
+            is_close[k] = scene.nearest(corner[j]).distance <= reach[components.of_item[open[k]]];
         },
         64);
     std::fill(is_new.begin(), is_new.end(), 0);
@@ -249,12 +269,17 @@ void drop_floaters(Items& items, std::vector<std::string>& warnings) {
   const Components components = connected_components(items);
   const double total = std::accumulate(components.area.begin(), components.area.end(), 0.0);
   const double least = std::min(kFloaterArea, kFloaterShare * total);
-  std::vector<char> is_kept(components.area.size(), 0);
+  std::vector<char> is_kept(components.area.size(), 0), hangs(is_kept);
+  if (items.is_mesh()) hangs = hanging_ones(items, components, total);
+  std::vector<double> reach;
   double kept = 0;
-  for (std::size_t c = 0; c < is_kept.size(); ++c)
-    if (components.area[c] >= least) is_kept[c] = 1, kept += components.area[c];
+  for (std::size_t c = 0; c < is_kept.size(); ++c) {
+    const double area = components.area[c];
+    reach.push_back(hangs[c] && area > kFloaterArea ? kHangingDistance : kFloaterDistance);
+    if (area >= least && !hangs[c]) is_kept[c] = 1, kept += area;
+  }
   if (kept < 0.5 * total) return;  // a soup of small pieces: no component says anything
-  if (items.is_mesh()) keep_close_ones(items, components, is_kept);
+  if (items.is_mesh()) keep_close_ones(items, components, reach, is_kept);
   const auto dropped = std::count(is_kept.begin(), is_kept.end(), 0);
   if (dropped == 0) return;
   for (int i = 0; i < items.size(); ++i)

@@ -30,7 +30,8 @@ struct Items {
 };
 
 Items collect_items(const Source& source);
-/// Marks small components far from the rest as unused; says how many in a warning.
+/// Marks small components far from the rest as unused, and lumps that hang in the air; says how
+/// many in a warning.
 void drop_floaters(Items& items, std::vector<std::string>& warnings);
 
 }  // namespace colod::regions

@@ -10,6 +10,11 @@ namespace colod::parameters::planes {
 constexpr double kFloaterArea = 2;        // m²: a component at least this large is never a floater
 constexpr double kFloaterShare = 0.002;   // of the area: likewise
 constexpr double kFloaterDistance = 0.2;  // metres: what lies closer to the building belongs to it
+constexpr double kHangingArea = 10;       // m²: a component in the air is dropped up to here …
+constexpr double kHangingShare = 0.01;    // of the area: … and here …
+constexpr double kHangingHeight = 1;      // metres over the foot; lower ones stand on something
+constexpr double kHangingDistance = 1;    // metres: … if no surface lies closer, where it is no
+                                          // smaller than kFloaterArea
 // --rules paper: points that stand for a mesh.
 constexpr double kSampleDensity = 100;   // a square metre: 10 cm apart, half the growing distance
 constexpr double kLeastSamples = 20000;  // a building, however small …

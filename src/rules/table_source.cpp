@@ -100,7 +100,9 @@ RuleInfo floaters_rule() {
   return {.rule = Rule::kFloaters,
           .id = "planes.floaters",
           .title = "small loose pieces are dropped",
-          .sees = "Connected components under an area that come near no larger one.",
+          .sees =
+              "Connected components under an area that come near no larger one; in the air larger "
+              "ones, too.",
           .does = "Leaves them out of planes and of all distances, and reports how much that was.",
           .paper = "The paper has no such step: each becomes planes.",
           .reason = "They were 26 to 48 % of all planes of the simulated scans.",
@@ -108,7 +110,14 @@ RuleInfo floaters_rule() {
                           "a component at least this large is none"},
                          {"share", "", planes::kFloaterShare, "of the area: likewise"},
                          {"distance", "m", planes::kFloaterDistance,
-                          "what lies closer to the building belongs to it"}},
+                          "what lies closer to the building belongs to it"},
+                         {"hanging_area", "m²", planes::kHangingArea,
+                          "a component in the air is one up to here"},
+                         {"hanging_share", "", planes::kHangingShare, "of the area: likewise"},
+                         {"hanging_height", "m", planes::kHangingHeight,
+                          "over the foot: what is lower stands on something"},
+                         {"hanging_distance", "m", planes::kHangingDistance,
+                          "of those over `area`: what lies closer belongs to the building"}},
           .needs = {},
           .test = "planes/planes: a floater is dropped, an unconnected piece on the wall is kept",
           .made_on = {"ingolstadt-north-scan"}};

@@ -99,6 +99,22 @@ TEST_CASE("a floater is dropped, an unconnected piece on the wall is kept") {
   CHECK(detect_planes(as_source(m)).box.max.x() == 10.2);
 }
 
+TEST_CASE("what hangs in the air is dropped, what stands, is near or is large is kept") {
+  const double size = GENERATE(0.5, 0.8, 1.1);  // metres a side: 1.5 to 7.3 m²
+  const bool is_small = size < 0.6;             // under 0.2 % of all
+  const Mesh hall = box_mesh({0, 0, 0}, {20, 12, 6});
+  const auto box_with = [&](const Vec3& low, const Vec3& extent) {
+    return detect_planes(as_source(join(hall, box_mesh(low, low + extent)))).box.max;
+  };
+  const Vec3 cube(size, size, size), canopy(2.8, 2 * size, 0.1);
+  CAPTURE(size);
+  CHECK(box_with({21.2, 2, 3}, cube).x() == 20);
+  CHECK(box_with({21.2, 2, 0}, cube).x() == (is_small ? 20 : 21.2 + size));  // on the ground
+  CHECK(box_with({8, 2, 6}, cube).z() == 6 + size);                          // a chimney
+  CHECK(box_with({20.5, 2, 3}, cube).x() == (is_small ? 20 : 20.5 + size));  // a bay, torn off
+  CHECK(box_with({21.2, 2, 3}, canopy).x() == (is_small ? 20 : 24));         // over 1 % of all
+}
+
 TEST_CASE("a sheet with both sides modelled is one plane") {
   Mesh m = sheet_with_hole(8, 2);
   const std::size_t n = m.faces.size();
