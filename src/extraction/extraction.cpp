@@ -16,6 +16,8 @@
 
 #include "boundary.h"
 #include "core/error.h"
+#include "corners.h"
+#include "coverage.h"
 #include "cut.h"
 #include "label.h"
 #include "plan.h"
@@ -65,6 +67,11 @@ Extraction finish(Draft draft, const Sight& sight, const ExtractionOptions& opti
   return result;
 }
 
+/// Of the outlines, 0..1: what lies on a draft's surface.
+double explained(const Draft& draft) {
+  return explained_share(draft.partition, draft.labels.evidence, draft.labels.is_inside);
+}
+
 /// The layer's planes, then those of a set that it does not have.
 std::vector<int> with_spares(std::vector<int> layer, const std::vector<int>& set) {
   const std::vector<int> before = layer;
@@ -88,6 +95,13 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
     Draft next = make_draft(pruning->plan, planes, sight, options);
     if (!keeps_surface(draft, next, *pruning)) break;
     draft = std::move(next), plan = std::move(pruning->plan);
+  }
+  if (std::optional<CuttingPlan> corners = plan_corners(plan, draft, options.rules);
+      corners && !is_spent(sight)) {
+    Draft next = make_draft(*corners, planes, sight, options);
+    if (!next.labels.is_inside.empty() && next.shell.mended < draft.shell.mended &&
+        explained(next) >= explained(draft))
+      draft = std::move(next), plan = std::move(*corners);
   }
   if (options.rules.has(Rule::kFacetPrice) && options.tolerance > 0 && !is_spent(sight))
     draft = simplify(std::move(draft), planes, options);

@@ -48,6 +48,13 @@ constexpr double kLeastCut = 0.15;    // metres of a border's part that is cut
 
 }  // namespace colod::parameters::extraction::sheets
 
+namespace colod::parameters::extraction::corners {
+
+constexpr double kStandsOut = 0.05;  // metres: a cell that a plane would part by less fits
+constexpr double kLeastLevel = 0.5;  // |z| of a normal: what ends a parapet
+
+}  // namespace colod::parameters::extraction::corners
+
 namespace colod::parameters::extraction::label {
 
 constexpr std::array<double, 4> kEscapes = {1.0, 0.6, 0.3, 0.1};

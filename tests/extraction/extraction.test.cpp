@@ -1,5 +1,6 @@
 #include "extraction/extraction.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "elements/elements_helpers.h"
 #include "extraction_helpers.h"
 #include "meshes.h"
 #include "shared_data.h"
@@ -111,7 +113,43 @@ Mesh l_shape() {
   return m;
 }
 
+/// A hall of 20 × 12 × 6 with a stair house on its roof to z = 8.5 and parapets of which nobody saw
+/// `gap` metres on either side of each corner; their tops are 2 cm apart.
+Mesh hall_with_parapets(double thickness, double gap) {
+  Mesh m = join(box_mesh({0, 0, 0}, {20, 12, 6}), box_mesh({8, 5, 6}, {12, 8, 8.5}));
+  const std::array<Vec3, 4> corners = {Vec3(0, 0, 0), Vec3(20, 0, 0), Vec3(20, 12, 0),
+                                       Vec3(0, 12, 0)};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 side = corners[(k + 1) % 4] - corners[k], along = side.normalized();
+    const Vec3 inward = thickness * Vec3(-along.y(), along.x(), 0);
+    const Vec3 low(0, 0, 6), high(0, 0, 6.4 + 0.02 * static_cast<double>(k));
+    const Vec3 a = corners[k] + gap * along, b = corners[k] + side - gap * along;
+    add_quad(m, a + low, b + low, b + high, a + high);
+    add_quad(m, b + inward + low, a + inward + low, a + inward + high, b + inward + high);
+    add_quad(m, a + high, b + high, b + inward + high, a + inward + high);
+  }
+  return m;
+}
+
 }  // namespace
+
+TEST_CASE("parapets meet in their corners, also where those were not seen, without a post") {
+  const double thickness = GENERATE(0.2, 0.25, 0.4), gap = GENERATE(0.0, 0.6, 1.0);
+  const Extraction e = extract(hall_with_parapets(thickness, gap));
+  const Check c = check(e.mesh);
+  CAPTURE(thickness, gap);
+  CHECK(c.is_closed);
+  CHECK(c.is_fan);
+  int corners = 0;
+  for (const Vec3& p : e.mesh.vertices) {
+    const bool is_on_stairs = p.x() > 7.9 && p.x() < 12.1 && p.y() > 4.9 && p.y() < 8.1;
+    if (!is_on_stairs) CHECK(p.z() < 6.5);
+    corners += p.z() > 6.3 && (p.x() < 0.01 || p.x() > 19.99) && (p.y() < 0.01 || p.y() > 11.99);
+  }
+  CHECK(corners >= 4);
+  const double parapets = thickness * (64 - 4 * thickness) * 0.43;
+  CHECK(signed_volume(e.mesh.mesh()) == Approx(20 * 12 * 6 + 4 * 3 * 2.5 + parapets).margin(0.5));
+}
 
 TEST_CASE("a box is a box") {
   const Extraction e = extract(box_mesh({0, 0, 0}, {8, 6, 5}));
