@@ -31,9 +31,11 @@ struct LevelLook {
                                           ///< empty: none
   int width = 0, height = 0;              ///< texels, multiples of 4
   ImageFormat format = ImageFormat::kJpeg;
-  int quality = 85;           ///< of images that are made of this one
-  bool has_fallback = false;  ///< whether they have one
-  Raster raster;              ///< its pixels; empty where the encoded image alone is kept
+  int quality = 85;            ///< of images that are made of this one
+  bool has_fallback = false;   ///< whether they have one
+  bool has_mip_levels = true;  ///< whether clients make them: no where something coarser is shown
+                               ///< before a pixel covers many texels
+  Raster raster;               ///< its pixels; empty where the encoded image alone is kept
   /// A tangent-space normal map beside it, as glTF has them: a PNG, and its pixels. Empty: none;
   /// the look is then shown as it is, without light.
   std::string normals;

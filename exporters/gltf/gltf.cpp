@@ -357,8 +357,10 @@ std::size_t add_image(GltfDocument& document, const std::string& bytes, ImageFor
 int add_texture(GltfDocument& document, const std::string& name, const LevelLook& look) {
   constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;
   OrderedJson& json = document.json;
+  // Clients may raise an image's sides to powers of two for its mip levels: CesiumJS does.
+  const int min_filter = look.has_mip_levels ? kTrilinear : kLinear;
   json["samplers"] = OrderedJson::array(
-      {{{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
+      {{{"magFilter", kLinear}, {"minFilter", min_filter}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
   OrderedJson texture = {{"sampler", 0}};
   const std::size_t image = add_image(document, look.image, look.format);
   if (const char* extension = extension_for(look.format)) {

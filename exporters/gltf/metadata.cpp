@@ -4,6 +4,7 @@
 #include "metadata.h"
 
 #include <algorithm>
+#include <map>
 
 namespace colod {
 
@@ -18,7 +19,24 @@ std::string as_utf8(const std::string& text) {
       .get<std::string>();
 }
 
-OrderedJson string_column(GltfDocument& document, const std::vector<std::string>& values) {
+/// Buffer views of columns. Those with the same bytes share one, as many do in a tile of one
+/// building: a view takes more bytes in JSON than it has itself.
+class Columns {
+ public:
+  explicit Columns(GltfDocument& document) : document_(document) {}
+  std::size_t view(const std::string& bytes) {
+    const auto known = views_.find(bytes);
+    if (known != views_.end()) return known->second;
+    return views_[bytes] = add_buffer_view(document_, bytes);
+  }
+  OrderedJson strings(const std::vector<std::string>& values);
+
+ private:
+  GltfDocument& document_;
+  std::map<std::string, std::size_t> views_;
+};
+
+OrderedJson Columns::strings(const std::vector<std::string>& values) {
   std::string bytes, offsets;
   for (const std::string& value : values) {
     put(offsets, static_cast<std::uint32_t>(bytes.size()));
@@ -27,8 +45,8 @@ OrderedJson string_column(GltfDocument& document, const std::vector<std::string>
   put(offsets, static_cast<std::uint32_t>(bytes.size()));
   if (bytes.empty()) bytes = std::string(1, '\0');  // a buffer view must not be empty
   OrderedJson column;
-  column["values"] = add_buffer_view(document, bytes);
-  column["stringOffsets"] = add_buffer_view(document, offsets);
+  column["values"] = view(bytes);
+  column["stringOffsets"] = view(offsets);
   return column;
 }
 
@@ -134,21 +152,22 @@ void add_features(GltfDocument& document, const std::vector<Feature>& features) 
     put(faces, static_cast<std::uint32_t>(f.faces));
   }
   OrderedJson table = {{"class", "building"}, {"count", features.size()}};
-  table["properties"]["name"] = string_column(document, names);
-  table["properties"]["layer"]["values"] = add_buffer_view(document, layers);
-  table["properties"]["coarsest_layer"]["values"] = add_buffer_view(document, coarsest);
-  table["properties"]["gsd"]["values"] = add_buffer_view(document, gsds);
-  table["properties"]["deviation"]["values"] = add_buffer_view(document, deviations);
-  table["properties"]["source"] = string_column(document, sources);
-  table["properties"]["given_name"] = string_column(document, given_names);
-  table["properties"]["faces"]["values"] = add_buffer_view(document, faces);
+  Columns columns(document);
+  table["properties"]["name"] = columns.strings(names);
+  table["properties"]["layer"]["values"] = columns.view(layers);
+  table["properties"]["coarsest_layer"]["values"] = columns.view(coarsest);
+  table["properties"]["gsd"]["values"] = columns.view(gsds);
+  table["properties"]["deviation"]["values"] = columns.view(deviations);
+  table["properties"]["source"] = columns.strings(sources);
+  table["properties"]["given_name"] = columns.strings(given_names);
+  table["properties"]["faces"]["values"] = columns.view(faces);
   OrderedJson described = schema();
-  OrderedJson& columns = described["classes"]["building"]["properties"];
-  for (const auto& [id, name] : attribute_columns(features, columns)) {
+  OrderedJson& properties = described["classes"]["building"]["properties"];
+  for (const auto& [id, name] : attribute_columns(features, properties)) {
     std::vector<std::string> values;
     for (const Feature& f : features) values.push_back(value_of(f, name));
-    columns[id] = {{"name", as_utf8(name)}, {"type", "STRING"}};
-    table["properties"][id] = string_column(document, values);
+    properties[id] = {{"name", as_utf8(name)}, {"type", "STRING"}};
+    table["properties"][id] = columns.strings(values);
   }
   document.json["extensions"]["EXT_structural_metadata"] = {
       {"schema", described}, {"propertyTables", OrderedJson::array({table})}};

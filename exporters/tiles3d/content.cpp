@@ -80,6 +80,11 @@ TileLook look_of(const TilesetInput& input, const PlannedTile& tile) {
   return {std::vector<LevelLook>(tile.parts.size()), {}};
 }
 
+/// As set_look() makes its material.
+bool is_unlit(const LevelLook& look) {
+  return look.has_texture() ? look.normals.empty() : !look.facet_colors.empty();
+}
+
 }  // namespace
 
 OrderedJson vec_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -97,7 +102,8 @@ void encode_content(const TilesetInput& input, const TileFrame& frame, Content& 
   const PlannedTile& tile = *content.tile;
   const std::vector<PolygonMesh> parts = placed_parts(tile, frame);
   const QuantizationGrid grid = content_grid(parts, rounding_bound(tile, input.options));
-  const TileLook look = look_of(input, tile);
+  TileLook look = look_of(input, tile);
+  look.whole.has_mip_levels = look.whole.format == ImageFormat::kKtx2;  // it brings them along
   FlatMesh merged;
   std::vector<Feature> features;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -106,6 +112,7 @@ void encode_content(const TilesetInput& input, const TileFrame& frame, Content& 
     content.gsd = std::max(content.gsd, features.back().gsd);
     append(merged, flat);
   }
+  if (is_unlit(look.whole)) merged.normals.clear();  // nothing asks for them
   GltfDocument document = start_gltf();
   if (!frame.is_on_earth())  // z up, metres; on Earth a tile's transform says it
     document.json["asset"]["extras"]["origin"] = vec_json(frame.origin());

@@ -49,8 +49,9 @@ FlatMesh flat_of(const ContextMesh& mesh, int image, const std::vector<Vec3>& ro
   return out;
 }
 
-LevelLook level_look(const ContextMesh& mesh, int image) {
+LevelLook level_look(const ContextMesh& mesh, int image, bool is_farthest) {
   LevelLook look;
+  look.has_mip_levels = is_farthest;
   if (image < 0) {
     look.facet_colors = {Rgb{}};  // that there are colours
     return look;
@@ -63,12 +64,13 @@ LevelLook level_look(const ContextMesh& mesh, int image) {
 }
 
 /// Empty bytes where the mesh shows nothing.
-std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& name,
-                   Compression compression, double quantization, Box& box) {
+std::string glb_of(ContextMesh mesh, const ContextNode& node, const TileFrame& frame,
+                   const std::string& name, Compression compression, double quantization,
+                   Box& box) {
   Box gltf_box;
   for (Vec3& p : mesh.mesh.vertices) p = frame.local(p), gltf_box.extend(to_gltf(p));
   if (mesh.mesh.faces.empty()) return {};
-  const QuantizationGrid grid = fit_grid(gltf_box, quantization);
+  const QuantizationGrid grid = fit_grid(gltf_box, std::max(quantization, node.rounding));
   std::vector<Vec3> rounded;
   for (const Vec3& p : mesh.mesh.vertices) rounded.push_back(grid.round(to_gltf(p)));
   GltfDocument document = start_gltf();
@@ -82,7 +84,8 @@ std::string glb_of(ContextMesh mesh, const TileFrame& frame, const std::string& 
     if (flat.triangles.empty()) continue;
     Box seen;
     OrderedJson primitive = add_primitive(document, flat, grid, compression, &seen);
-    set_look(document, level_look(mesh, image), name + "-" + std::to_string(image), primitive);
+    set_look(document, level_look(mesh, image, node.is_farthest),
+             name + "-" + std::to_string(image), primitive);
     primitives.push_back(std::move(primitive));
     box.extend(from_gltf(seen.min)), box.extend(from_gltf(seen.max));
   }
@@ -136,9 +139,9 @@ std::vector<ContextTile> encode_context(const ContextTiles& context, const TileF
   std::vector<char> is_shown(count, 0);
   const Files files(context.nodes);
   parallel_for(count, [&](std::size_t i) {
-    const Encoded file{Files::glb(i),
-                       glb_of(context.mesh(i), frame, "context-" + std::to_string(i), compression,
-                              std::max(quantization, context.nodes[i].rounding), tiles[i].box)};
+    const Encoded file{Files::glb(i), glb_of(context.mesh(i), context.nodes[i], frame,
+                                             "context-" + std::to_string(i), compression,
+                                             quantization, tiles[i].box)};
     is_shown[i] = !file.bytes.empty();
     if (is_shown[i]) take(file);
   });

@@ -31,6 +31,7 @@ struct ContextNode {
   double geometric_error = 0;  ///< metres; raised where children's would not lie below it
   bool is_added = false;       ///< its children join what it shows
   double rounding = 0;         ///< metres that positions may be off, if more than `quantization`
+  bool is_farthest = true;     ///< nothing coarser is shown for it: its image needs mip levels
 };
 
 /// All of it; a mesh is asked for when its tile is encoded.

@@ -15,6 +15,7 @@ constexpr Rgb kPlain = {231, 231, 231};  // the plain material's 0.8 of light
 constexpr int kBlock = 4;                // texels a side: what a building without texture takes
 constexpr double kFaces = 0.5;           // cosine between a stand-in's side and what it stands for
 constexpr double kLeastPixels = 16;      // of a triangle that tells how large texels are
+constexpr int kCoarseQuality = 75;       // of images that finer ones replace, as around buildings
 
 /// Light times area, and the area.
 using Sum = Eigen::Vector4d;
@@ -164,7 +165,7 @@ TileLook shared(const PlannedTile& tile, int largest) {
                                images[i], rects[i], whole));
   look.whole.uvs = look.parts.front().uvs;  // that there is a texture
   look.whole.format = first->format;
-  look.whole.quality = first->quality;
+  look.whole.quality = tile.is_finest ? first->quality : std::min(first->quality, kCoarseQuality);
   look.whole.has_fallback = first->has_fallback;
   look.whole.encode(whole);
   return look;

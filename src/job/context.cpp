@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "core/error.h"
 #include "scene/closing.h"
@@ -26,20 +28,46 @@ constexpr double kFlat = 0.05;          // metres: ground that nobody has seen n
 constexpr double kStraight = 1e-3;      // metres: a corner that is off by less is none
 constexpr double kRounding = 1.0 / 16;  // of a texel: such tiles fit their neighbours no better
 constexpr double kOff = 0.25;           // of a texel: so far faces may be off, for pictures to stay
+constexpr double kOffInPlan = 2;        // times that: a border between ground and a building
+constexpr double kOffBelow = 2;         // times that: ground of which next to nothing is seen
 constexpr double kDeeper = 2;           // times what a rim may move
 constexpr std::size_t kChainImages = std::size_t{128} << 20;  // bytes of decoded images
 
 using Pieces = std::vector<Territories::Piece>;
 
+/// What of a plan buildings stand for, as exactly as tiles need it.
+class BuiltPlan {
+ public:
+  explicit BuiltPlan(Territories all) : all_(std::move(all)), exact_(all_.coarser(kStraight)) {}
+
+  const Territories& exact() const { return exact_; }
+
+  /// With corners that may be off by `error`, in metres, or by half of that. Thread-safe.
+  const Territories& within(double error) const {
+    const double tolerance = std::exp2(std::floor(std::log2(error)));
+    if (!(tolerance > kStraight)) return exact_;
+    const std::lock_guard lock(mutex_);
+    const auto known = coarse_.find(tolerance);
+    return (known != coarse_.end() ? known
+                                   : coarse_.emplace(tolerance, all_.coarser(tolerance)).first)
+        ->second;
+  }
+
+ private:
+  Territories all_, exact_;
+  mutable std::mutex mutex_;
+  mutable std::map<double, Territories> coarse_;
+};
+
 /// A scene, and what of its plan buildings stand for.
 struct Around {
   std::shared_ptr<const PartedScene> scene;
-  Territories built;
+  BuiltPlan built;
   ClosingGround ground;
 
   Around(const std::shared_ptr<const PartedScene>& whole, const std::vector<char>& is_unbuilt)
       : scene(whole),
-        built(whole->territories.without(is_unbuilt).coarser(kStraight)),
+        built(whole->territories.without(is_unbuilt)),
         ground(whole->map, whole->classes) {}
 };
 using Place = std::shared_ptr<const Around>;
@@ -75,14 +103,19 @@ std::vector<char> replaced(const std::vector<TileNode>& nodes,
   return out;
 }
 
-/// Whether most of what is finest has something coarser that stands for it from afar.
-bool has_own_chain(const SceneTiles& tiles) {
-  const std::vector<TileNode>& nodes = tiles.tree().nodes;
-  std::vector<char> is_served(nodes.size(), 0);
+/// Per node: whether something coarser that it replaces is shown from afar.
+std::vector<char> with_coarser(const std::vector<TileNode>& nodes) {
+  std::vector<char> out(nodes.size(), 0);
   for (std::size_t i = 1; i < nodes.size(); ++i) {
     const auto above = static_cast<std::size_t>(nodes[i].parent);
-    is_served[i] = is_served[above] || (!nodes[above].contents.empty() && !nodes[above].is_added);
+    out[i] = out[above] || (!nodes[above].contents.empty() && !nodes[above].is_added);
   }
+  return out;
+}
+
+/// Whether most of what is finest has something coarser that stands for it from afar.
+bool has_own_chain(const SceneTiles& tiles) {
+  const std::vector<char> is_served = with_coarser(tiles.tree().nodes);
   std::size_t served = 0;
   for (const int i : tiles.finest()) served += is_served[static_cast<std::size_t>(i)];
   return static_cast<double>(served) >= kServing * static_cast<double>(tiles.finest().size());
@@ -91,8 +124,9 @@ bool has_own_chain(const SceneTiles& tiles) {
 /// What of a tile is no building's, closed where it was cut, and as much lighter as `error` allows;
 /// 0: as it is. Where a rim moves, what hangs from it hides what opens beside it.
 Source beside_buildings(const Around& place, const Source& tile, double error) {
-  Source out = place.built.cut_out(tile, -1);
-  const std::vector<char> is_joint = add_skirts(place.built, place.ground, out, kDeeper * error);
+  const Territories& built = place.built.within(kOffInPlan * error);
+  Source out = built.cut_out(tile, -1);
+  const std::vector<char> is_joint = add_skirts(built, place.ground, out, kDeeper * error);
   return error > 0 ? lighter(out, is_joint, error) : out;
 }
 
@@ -101,9 +135,10 @@ Source below_buildings(const Around& place, const Pieces& pieces, double error) 
   Source out = place.ground.below(pieces);
   const bool is_finest = error <= 0;
   std::vector<char> is_rim = on_border(out.mesh);
-  const std::vector<char> is_joint = add_skirts(place.built, place.ground, out, kDeeper * error);
+  const std::vector<char> is_joint =
+      add_skirts(place.built.exact(), place.ground, out, kDeeper * error);
   is_rim.resize(is_joint.size(), 0);
-  return lighter(out, is_finest ? is_rim : is_joint, is_finest ? kFlat : error);
+  return lighter(out, is_finest ? is_rim : is_joint, is_finest ? kFlat : kOffBelow * error);
 }
 
 Vec2 middle_of(const Territories::Piece& piece) {
@@ -129,7 +164,7 @@ std::vector<Pieces> closed_by(const Around& place) {
   const SceneTiles& tiles = place.scene->tiles;
   const std::vector<TileNode>& nodes = tiles.tree().nodes;
   std::vector<Pieces> out(nodes.size());
-  for (const Territories::Piece& piece : place.built.pieces()) {
+  for (const Territories::Piece& piece : place.built.exact().pieces()) {
     int node = tiles.node(tile_below(tiles, middle_of(piece)));
     while (node >= 0) {
       const auto n = static_cast<std::size_t>(node);
@@ -177,6 +212,7 @@ class Nodes {
     const std::vector<TileNode>& tree = place->scene->tiles.tree().nodes;
     const std::vector<char> is_left_out = too_fine(place->scene->tiles);
     const std::vector<char> is_replaced = replaced(tree, is_left_out);
+    const std::vector<char> has_coarser = with_coarser(tree);
     const auto images = std::make_shared<const CoarseImages>(kChainImages);
     const auto closed = std::make_shared<const std::vector<Pieces>>(closed_by(*place));
     std::vector<int> number;
@@ -186,10 +222,12 @@ class Nodes {
       const int above = tree[i].parent;
       const double texel = is_replaced[i] ? tree[i].geometric_error / output_.target_sse : 0;
       nodes_.push_back({above < 0 ? -1 : number[static_cast<std::size_t>(above)],
-                        tree[i].geometric_error, tree[i].is_added, kRounding * texel});
-      read_.push_back([place, options, images, closed, texel, i] {
+                        tree[i].geometric_error, tree[i].is_added, kRounding * texel,
+                        !has_coarser[i]});
+      const bool is_farthest = !has_coarser[i];
+      read_.push_back([place, options, images, closed, texel, is_farthest, i] {
         Source shown = read_node(*place, i, (*closed)[i], kOff * texel, options);
-        if (texel > 0) images->give(shown, texel);
+        if (texel > 0) images->give(shown, texel, is_farthest);
         return shown;
       });
     }
@@ -207,7 +245,7 @@ class Nodes {
       const auto leaf = static_cast<std::size_t>(std::max(node.leaf, 0));
       if (node.leaf >= 0 && leaves[leaf].texel > 0) continue;  // no tile itself
       nodes_.push_back({node.parent < 0 ? -1 : number[static_cast<std::size_t>(node.parent)],
-                        error_of(node, output_), false, 0});
+                        error_of(node, output_), false, 0, node.parent < 0});
       if (node.leaf >= 0)
         read_.push_back([read, leaf] { return read(leaf); });
       else
@@ -233,7 +271,7 @@ class Nodes {
 void add_own_chain(const Place& place, Nodes& nodes) {
   const SceneTiles& tiles = place->scene->tiles;
   const auto pieces = std::make_shared<std::vector<Pieces>>(tiles.count());
-  for (const Territories::Piece& piece : place->built.pieces())
+  for (const Territories::Piece& piece : place->built.exact().pieces())
     (*pieces)[tile_below(tiles, middle_of(piece))].push_back(piece);
   const auto show = [place, pieces](std::size_t i, const Source& tile) {
     return joined({beside_buildings(*place, tile, 0), below_buildings(*place, (*pieces)[i], 0)});

@@ -133,6 +133,7 @@ struct Context {
     double geometric_error = 0;  ///< metres, as the source has it
     bool is_added = false;       ///< its children join what it shows instead of replacing it
     double rounding = 0;         ///< metres that positions may be off, if more than the output's
+    bool is_farthest = true;     ///< nothing coarser is shown for it, however far away
   };
   std::vector<Node> nodes;
   std::function<Source(std::size_t node)> read;                    ///< what it shows; thread-safe

@@ -163,7 +163,7 @@ std::optional<ContextTiles> context_tiles(const Scene& scene, const TextureOptio
   if (!scene.context) return {};
   ContextTiles tiles;
   for (const Context::Node& n : scene.context->nodes)
-    tiles.nodes.push_back({n.parent, n.geometric_error, n.is_added, n.rounding});
+    tiles.nodes.push_back({n.parent, n.geometric_error, n.is_added, n.rounding, n.is_farthest});
   failures.assign(tiles.nodes.size(), {});
   const auto images =
       std::make_shared<const ImageCache>(static_cast<std::size_t>(options.memory * (1 << 20)));

@@ -2,6 +2,7 @@
 #include "coarse_images.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "filling.h"
@@ -17,6 +18,8 @@ constexpr double kWorth = 0.9;  // of the texels: of what is more they stay …
 constexpr double kMostlyBare =
     0.75;                // … but for images of which less is worn: the rest costs no byte
 constexpr int kRim = 1;  // texels around a chart
+constexpr double kMoreTexels =
+    1.1;                            // times what an image has, where its sides become powers of two
 constexpr double kTouching = 0.45;  // pixels between a triangle and the middle of one that it wears
 constexpr double kLeastPixels = 1e-6;
 
@@ -143,6 +146,30 @@ Raster resampled(const Raster& from, const std::vector<char>& is_worn, const Cha
   return out;
 }
 
+/// Powers of two, each no more than a factor of two off, with as many texels together as there
+/// were or somewhat fewer: half as many at least.
+std::array<int, 2> powers_of_two(int width, int height) {
+  const auto below = [](int n) {
+    return static_cast<int>(std::bit_floor(static_cast<unsigned>(n)));
+  };
+  const int w = below(width), h = below(height);
+  const bool is_wider = static_cast<double>(width) / w > static_cast<double>(height) / h;
+  if (2.0 * w * h > kMoreTexels * width * height) return {w, h};
+  return is_wider ? std::array{2 * w, h} : std::array{w, 2 * h};
+}
+
+Raster on_powers_of_two(const Raster& from) {
+  const auto [width, height] = powers_of_two(from.width, from.height);
+  Raster out(width, height);
+  const std::vector<char> all(static_cast<std::size_t>(from.width) * from.height, 1);
+  const double across = static_cast<double>(from.width) / out.width;
+  const double down = static_cast<double>(from.height) / out.height;
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      mean_of(from, all, {x * across, (x + 1) * across}, {y * down, (y + 1) * down}, out.at(x, y));
+  return out;
+}
+
 Chart size_of(const Chart& chart, double scale) {
   const auto texels = [&](int pixels) {
     return std::max(1, static_cast<int>(std::ceil(pixels * scale)));
@@ -261,7 +288,7 @@ Raster CoarseImages::Impl::draw_all(const Source& source, const std::vector<Movi
   return out;
 }
 
-void CoarseImages::give(Source& source, double texel) const {
+void CoarseImages::give(Source& source, double texel, bool has_mip_levels) const {
   std::vector<Moving> moving = impl_->moving(source, texel);
   double texels = 0;
   for (const Moving& m : moving) texels += static_cast<double>(m.width) * m.height;
@@ -272,8 +299,9 @@ void CoarseImages::give(Source& source, double texel) const {
         pack(moving, (worn_texels(source, moving) < kMostlyBare * texels ? 1 : kWorth) * texels);
   }
   if (packing.size[0] == 0) return;
-  const Raster raster = impl_->draw_all(source, moving, packing);
+  Raster raster = impl_->draw_all(source, moving, packing);
   if (raster.width == 0) return;
+  if (has_mip_levels) raster = on_powers_of_two(raster);
   std::size_t first = 0;
   for (const Moving& m : moving) {
     wear(m, &packing.rects[first], packing.size, source);

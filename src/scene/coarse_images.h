@@ -20,8 +20,9 @@ class CoarseImages {
   /// Where charts would take more room than their images these are one chart each. The source is
   /// left as it is where that saves less than a tenth of its texels and most of them are worn; so
   /// is an image that is transparent, tinted, repeated or cannot be decoded. `texel`: metres.
+  /// With `has_mip_levels` the sides are powers of two, since clients would raise them.
   /// Thread-safe.
-  void give(Source& source, double texel) const;
+  void give(Source& source, double texel, bool has_mip_levels) const;
 
  private:
   struct Impl;

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "exporters/gltf/engine.h"
 #include "exporters/gltf/glb.h"
@@ -184,6 +186,65 @@ TEST_CASE(
     groups += table["count"] == 6;
   }
   CHECK(groups == 1);
+}
+
+TEST_CASE(
+    "mip levels are made of what is seen ever so small, not of tiles that coarser ones replace") {
+  std::vector<ExportBuilding> buildings;
+  for (const ExportBuilding& b : street(6)) buildings.push_back(dressed(b));
+  ContextTiles place{{{}, {.parent = 0, .is_farthest = false}}, [](std::size_t i) {
+                       ContextMesh mesh;
+                       mesh.mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+                       mesh.mesh.faces = {{0, 1, 2}};
+                       mesh.uvs = {{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}};
+                       mesh.face_image = {0}, mesh.colors.resize(1);
+                       mesh.images = {{std::to_string(i), ImageFormat::kJpeg}};
+                       return mesh;
+                     }};
+  std::vector<Encoded> files = encode_tileset(buildings, {.context = &place});
+  files.push_back(encode_building_glb(buildings[0]));
+  constexpr int kLinear = 9729, kTrilinear = 9987;
+  int seen = 0;
+  for (const Encoded& file : files) {
+    if (!file.path.ends_with(".glb")) continue;
+    const Glb glb = parse_glb(file.bytes);
+    if (!glb.json.contains("samplers")) continue;
+    ++seen;
+    CAPTURE(file.path);
+    const bool is_far = file.path == "tiles/context/0.glb" || file.path.starts_with("buildings/");
+    CHECK(glb.json["samplers"][0]["minFilter"] == (is_far ? kTrilinear : kLinear));
+  }
+  CHECK(seen > 6);
+}
+
+TEST_CASE("tiles have normals where light falls on them, and columns with the same bytes once") {
+  enum class Wear { kNothing, kColors, kImages };
+  const Wear wear = GENERATE(Wear::kNothing, Wear::kColors, Wear::kImages);
+  std::vector<ExportBuilding> buildings;
+  for (const ExportBuilding& b : street(6)) {
+    buildings.push_back(wear == Wear::kNothing ? b : dressed(b));
+    if (wear == Wear::kColors)
+      for (ExportLevel& level : buildings.back().levels) level.look.uvs.clear();
+  }
+  for (const Encoded& file : encode_tileset(buildings)) {
+    if (!file.path.ends_with(".glb")) continue;
+    const Glb glb = parse_glb(file.bytes);
+    CAPTURE(file.path);
+    const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+    CHECK(primitive["attributes"].contains("NORMAL") == (wear == Wear::kNothing));
+    const auto& columns =
+        glb.json["extensions"]["EXT_structural_metadata"]["propertyTables"][0]["properties"];
+    std::map<std::string, std::set<int>> views;  // by bytes
+    for (const auto& column : columns)
+      for (const char* part : {"values", "stringOffsets"})
+        if (column.contains(part)) {
+          const auto& view = glb.json["bufferViews"][column[part].get<int>()];
+          views[glb.binary.substr(view["byteOffset"], view["byteLength"])].insert(
+              column[part].get<int>());
+        }
+    CHECK(views.size() > 4);
+    for (const auto& [bytes, same] : views) CHECK(same.size() == 1);
+  }
 }
 
 TEST_CASE("a building that looks the same on all levels wears no more in its group than is seen") {

@@ -170,7 +170,7 @@ TEST_CASE("a coarse tile wears one image with texels as large as pixels, of what
   std::ofstream(image, std::ios::binary) << encode_image(loud, ImageFormat::kPng, 90);
   Source after = before;
   const CoarseImages coarse(std::size_t{1} << 26);
-  coarse.give(after, larger / side);
+  coarse.give(after, larger / side, false);
   const std::set<int> worn(after.look.face_material.begin(), after.look.face_material.end());
   REQUIRE(worn.size() == 1);
   const Material& material = after.look.materials[static_cast<std::size_t>(*worn.begin())];
@@ -193,7 +193,7 @@ TEST_CASE("where charts would take more room than their image a coarse tile wear
   const Source before = checkered(write_image(folder), kParts, 1);
   Source after = before;
   const CoarseImages coarse(std::size_t{1} << 26);
-  coarse.give(after, larger * kParts / 256);
+  coarse.give(after, larger * kParts / 256, false);
   const Material& material =
       after.look.materials[static_cast<std::size_t>(after.look.face_material[0])];
   REQUIRE(material.image == 1);
@@ -204,6 +204,31 @@ TEST_CASE("where charts would take more room than their image a coarse tile wear
   CHECK(std::min(facts.width, facts.height) >= 256 / larger);
   for (int f = 0; f < static_cast<int>(before.mesh.faces.size()); f += 7)
     CHECK((seen(before, f) - seen(after, f)).matrix().norm() < 0.06);
+}
+
+TEST_CASE("where mip levels are made of a coarse tile's image its sides are powers of two") {
+  const double larger = GENERATE(1.1, 1.7, 3.0, 5.0);
+  constexpr int kParts = 4;
+  const TemporaryFolder folder;
+  const Source before = checkered(write_image(folder), kParts, 1);
+  Source plain = before, ready = before;
+  const CoarseImages coarse(std::size_t{1} << 26);
+  coarse.give(plain, larger * kParts / 256, false);
+  coarse.give(ready, larger * kParts / 256, true);
+  const ImageCache cache(std::size_t{1} << 26);
+  const ImageCache::Facts own = cache.facts(plain.look.images.back());
+  const ImageCache::Facts facts = cache.facts(ready.look.images.back());
+  CAPTURE(larger, own.width, own.height, facts.width, facts.height);
+  for (const auto& [side, was] : {std::array{facts.width, own.width}, {facts.height, own.height}}) {
+    CHECK((side & (side - 1)) == 0);
+    CHECK(side <= 2 * was);
+    CHECK(2 * side > was);
+  }
+  const double share = static_cast<double>(facts.width) * facts.height / own.width / own.height;
+  CHECK(share > 0.5);
+  CHECK(share < 1.15);
+  for (int f = 0; f < static_cast<int>(before.mesh.faces.size()); ++f)
+    CHECK((seen(before, f) - seen(ready, f)).matrix().norm() < 0.1);
 }
 
 TEST_CASE("a coarse tile whose images are no finer than pixels, tinted or lost keeps them") {
@@ -217,7 +242,7 @@ TEST_CASE("a coarse tile whose images are no finer than pixels, tinted or lost k
   clear.look.materials[0].cutoff = 0.5f;
   for (Source* s : {&fitting, &lost, &repeated, &tinted, &clear}) {
     const Source before = *s;
-    coarse.give(*s, s == &fitting ? 1.0 / 256 : 0.1);
+    coarse.give(*s, s == &fitting ? 1.0 / 256 : 0.1, true);
     CHECK(s->look.images == before.look.images);
     CHECK(s->look.uvs == before.look.uvs);
     CHECK(s->look.face_material == before.look.face_material);
