@@ -31,8 +31,9 @@ namespace colod {
 namespace {
 
 constexpr int kPruningRounds = 2;
-constexpr int kTrials = 4;            // of spares, for a layer
-constexpr double kMuchMended = 0.02;  // share of the volume turned round that asks for a warning
+constexpr int kTrials = 4;              // of spares, for a layer
+constexpr double kMuchMended = 0.02;    // share of the volume turned round that asks for a warning
+constexpr double kCornerShare = 0.002;  // of the outlines, which corners may cover
 
 /// cut → label → surface
 Draft make_draft(const CuttingPlan& plan, const Planes& planes, Sight& sight,
@@ -100,7 +101,7 @@ Extraction extract_layer(const Planes& planes, const std::vector<int>& layer_pla
       corners && !is_spent(sight)) {
     Draft next = make_draft(*corners, planes, sight, options);
     if (!next.labels.is_inside.empty() && next.shell.mended < draft.shell.mended &&
-        explained(next) >= explained(draft))
+        explained(next) >= explained(draft) - kCornerShare)
       draft = std::move(next), plan = std::move(*corners);
   }
   if (options.rules.has(Rule::kFacetPrice) && options.tolerance > 0 && !is_spent(sight))

@@ -114,7 +114,7 @@ Mesh l_shape() {
 }
 
 /// A hall of 20 × 12 × 6 with a stair house on its roof to z = 8.5 and parapets of which nobody saw
-/// `gap` metres on either side of each corner; their tops are 2 cm apart.
+/// the outside and the top for `gap` metres on either side of each corner; tops are 2 cm apart.
 Mesh hall_with_parapets(double thickness, double gap) {
   Mesh m = join(box_mesh({0, 0, 0}, {20, 12, 6}), box_mesh({8, 5, 6}, {12, 8, 8.5}));
   const std::array<Vec3, 4> corners = {Vec3(0, 0, 0), Vec3(20, 0, 0), Vec3(20, 12, 0),
@@ -125,7 +125,8 @@ Mesh hall_with_parapets(double thickness, double gap) {
     const Vec3 low(0, 0, 6), high(0, 0, 6.4 + 0.02 * static_cast<double>(k));
     const Vec3 a = corners[k] + gap * along, b = corners[k] + side - gap * along;
     add_quad(m, a + low, b + low, b + high, a + high);
-    add_quad(m, b + inward + low, a + inward + low, a + inward + high, b + inward + high);
+    const Vec3 c = corners[k] + inward, d = corners[k] + side + inward;  // seen into the corner
+    add_quad(m, d + low, c + low, c + high, d + high);
     add_quad(m, a + high, b + high, b + inward + high, a + inward + high);
   }
   return m;
