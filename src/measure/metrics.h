@@ -41,7 +41,7 @@ struct Validity {
 Validity check_validity(const Mesh& mesh, bool check_self_intersections = true);
 
 struct DistanceOptions {
-  int samples = 100000;  ///< area-uniform, a side at least; vertices are added
+  int samples = 100000;  ///< evenly over the area, on each side; vertices are added
   std::uint64_t seed = 1;
 };
 

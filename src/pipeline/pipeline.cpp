@@ -25,6 +25,8 @@ namespace {
 
 using namespace parameters::layers;
 
+constexpr int kDistanceSamples = 25'000;  // means are off by 0.2 % in the median, 1.2 % at most
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -370,7 +372,7 @@ void mesh_building(Building& b, const Options& options, const Hooks& hooks) {
       return;
     }
     replace_invented(surface, options.rules.has(Rule::kVolume), b);
-    const DistanceGauge source(b.source, {}, parted(b.planes));
+    const DistanceGauge source(b.source, {.samples = kDistanceSamples}, parted(b.planes));
     const LookGauge looks(b.source, surface);
     for (Layer& layer : b.layers)
       if (layer.failure.empty()) measure(source, looks, layer);

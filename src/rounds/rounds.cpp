@@ -30,19 +30,38 @@ constexpr std::size_t kPartners = 4;  // of each
 constexpr int kMostShapes = 32;
 constexpr std::size_t kMostDirections = 3;  // of level axes
 
-std::vector<BentEdge> bent_edges(const Facets& facets) {
-  struct Use {
-    int low, high, face;
+/// An edge of a face with an area.
+struct EdgeUse {
+  int low, high, face;
+};
+
+/// By both vertices, then by face: put where their lower vertex says, of which few have many.
+std::vector<EdgeUse> sorted_edges(const Facets& facets) {
+  const Mesh& mesh = facets.mesh;
+  const auto for_each = [&](auto&& take) {
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+      for (std::size_t k = 0; facets.area[f] > 0 && k < 3; ++k) {
+        const auto [low, high] = std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
+        take(EdgeUse{low, high, static_cast<int>(f)});
+      }
   };
-  std::vector<Use> uses;
-  for (std::size_t f = 0; f < facets.mesh.faces.size(); ++f)
-    for (int k = 0; facets.area[f] > 0 && k < 3; ++k) {
-      const int a = facets.mesh.faces[f][k], b = facets.mesh.faces[f][(k + 1) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), static_cast<int>(f)});
-    }
-  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
-    return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
-  });
+  std::vector<std::size_t> first(mesh.vertices.size() + 1, 0);
+  for_each([&](const EdgeUse& use) { ++first[static_cast<std::size_t>(use.low) + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<EdgeUse> out(first.back());
+  std::vector<std::size_t> next = first;
+  for_each([&](const EdgeUse& use) { out[next[static_cast<std::size_t>(use.low)]++] = use; });
+  for (std::size_t v = 0; v + 1 < first.size(); ++v)
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first[v]),
+              out.begin() + static_cast<std::ptrdiff_t>(first[v + 1]),
+              [](const EdgeUse& a, const EdgeUse& b) {
+                return std::tie(a.high, a.face) < std::tie(b.high, b.face);
+              });
+  return out;
+}
+
+std::vector<BentEdge> bent_edges(const Facets& facets) {
+  const std::vector<EdgeUse> uses = sorted_edges(facets);
   const double most = std::cos(kLeastBend), least = std::cos(kMostStep);
   std::vector<BentEdge> edges;
   for (std::size_t i = 0, end; i < uses.size(); i = end) {
