@@ -16,6 +16,7 @@
 #include "exporters/files.h"
 #include "input_options.h"
 #include "job/job.h"
+#include "job/place_record.h"
 #include "job/scene_input.h"
 #include "numbers.h"
 #include "output.h"
@@ -115,6 +116,8 @@ int segment(const StageArguments& a) {
     store.drop_damaged(warns(log));
     segment_into(store, found.inventory, found.read, a.options, log, problems);
     if (!found.attributes.empty()) store.put_attributes(found.attributes);
+    store.put_place(
+        found.scene ? to_json(PlaceRecord{found.scene->tiles.tree().path, a.read, a.choice}) : "");
   }
   log_problems(problems, log);
   return exit_code(problems);
@@ -326,6 +329,25 @@ void decide(const StageArguments& a, const Options& options, Scene& scene, const
   if (!a.plan.path.empty()) keep_switching(a.plan.path, scene);
 }
 
+/// What is around the buildings of a place.
+void add_places(const StageArguments& a, const std::vector<Store>& stores, const Log& log,
+                Scene& scene) {
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    const std::string record = stores[i].place();
+    if (record.empty()) continue;
+    if (stores.size() > 1) {
+      scene.failures.push_back({a.inputs[i],
+                                "is of a place: what is around its buildings is left "
+                                "out, export it alone"});
+      continue;
+    }
+    const OutputOptions& o = a.output.options;
+    add_place_again(
+        place_record_of(record), {o.crs, o.origin, o.target_sse, o.switching.pixel_error},
+        [&](const Message& m) { log.message(m); }, scene);
+  }
+}
+
 int export_files(const StageArguments& a) {
   if (!a.plan.path.empty() && is_sharded(a.plan.shard))
     return export_shard({a.plan, a.prior, a.output, a.run});
@@ -347,6 +369,7 @@ int export_files(const StageArguments& a) {
     store.get_placed_later(scene);
   }
   check_exportable(scene);
+  add_places(a, stores, log, scene);
   make_folder(a.output.out);
   const Options options = stores.front().options();
   Gallery gallery(scene.buildings.size(), options.layers);

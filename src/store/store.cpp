@@ -338,6 +338,10 @@ void Store::get_placed_later(Scene& scene) const {
             [&](const Json& json) { scene.placed_later.merge(json.get<std::set<std::string>>()); });
 }
 
+void Store::put_place(const std::string& record) { impl_->put_meta("place", record); }
+
+std::string Store::place() const { return impl_->meta("place").value_or(""); }
+
 void Store::put_attributes(const std::map<std::string, Attributes>& attributes) {
   Json json = Json::object();
   for (const auto& [building, own] : attributes)

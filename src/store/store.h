@@ -96,6 +96,11 @@ class Store {
   void put_placed_later(const std::set<std::string>& names);
   void get_placed_later(Scene& scene) const;
 
+  /// How the place was opened that its buildings are of, a line that says so to whoever opens it
+  /// again; empty: it is of files with buildings.
+  void put_place(const std::string& record);
+  std::string place() const;
+
   /// What footprints say of buildings; `get` adds to what is there.
   void put_attributes(const std::map<std::string, Attributes>& attributes);
   void get_attributes(std::map<std::string, Attributes>& attributes) const;

@@ -8,6 +8,7 @@
 
 #include "place/place.h"
 #include "program.h"
+#include "row_scene.h"
 #include "scenes.h"
 
 using namespace colod;
@@ -23,55 +24,6 @@ Ended build(const TempFolder& folder, const std::string& rest) {
   return run_colod(folder.path, "build " + rest + " -o " + (folder.path / "out").string() +
                                     " --ns 24 --nr 24 --no-report-html");
 }
-
-/// Two houses of a row, 8 by 10 m, 6 and 9 m high, that share the wall at x = 20, on level ground
-/// in four tiles.
-const std::vector<Box> kRow = {Box{{12, 14, 0}, {20, 24, 6}}, Box{{20, 14, 0}, {28, 24, 9}}};
-
-/// The finest tiles stand below `coarse`, one below another; `beside` them others.
-std::string write_row(const TempFolder& folder, const std::string& root_members = "",
-                      const std::vector<std::string>& coarse = {}, const std::string& beside = "") {
-  const Mesh whole = terrain_with_boxes(40, 1, kRow);
-  std::string children;
-  for (int t = 0; t < 4; ++t) {
-    Mesh part;
-    part.vertices = whole.vertices;
-    for (const Face& f : whole.faces) {
-      const Vec3 middle = (whole.vertices[static_cast<std::size_t>(f[0])] +
-                           whole.vertices[static_cast<std::size_t>(f[1])] +
-                           whole.vertices[static_cast<std::size_t>(f[2])]) /
-                          3;
-      if ((middle.x() > 17.5 ? 1 : 0) + (middle.y() > 17.5 ? 2 : 0) == t) part.faces.push_back(f);
-    }
-    const std::string name = "tile" + std::to_string(t) + ".b3dm";
-    folder.write(name, b3dm_of(glb_of(y_up(part))));
-    children += (t ? "," : "") + tile_of(name);
-  }
-  children += beside;
-  for (const std::string& name : coarse)
-    children = tile_of(name, R"(,"refine":"REPLACE","children":[)" + children + "]", 1);
-  return folder.write("tileset.json",
-                      tileset_of(tile_of("", root_members + R"(,"children":[)" + children + "]")));
-}
-
-std::string square(double x, double y, double w, double h) {
-  const auto point = [](double a, double b) {
-    return "[" + std::to_string(a) + "," + std::to_string(b) + "]";
-  };
-  return point(x, y) + "," + point(x + w, y) + "," + point(x + w, y + h) + "," + point(x, y + h) +
-         "," + point(x, y);
-}
-
-std::string plan(const std::vector<std::pair<std::string, std::string>>& rings) {
-  std::string out = R"({"type":"FeatureCollection","features":[)";
-  for (std::size_t i = 0; i < rings.size(); ++i)
-    out += (i ? "," : "") + std::string(R"({"type":"Feature","properties":{"id":")") +
-           rings[i].first + R"(","use":"flats"},"geometry":{"type":"Polygon","coordinates":[[)" +
-           rings[i].second + "]]}}";
-  return out + "]}";
-}
-
-const std::string kPlan = plan({{"left", square(12, 14, 8, 10)}, {"right", square(20, 14, 8, 10)}});
 
 Json report(const TempFolder& folder) {
   return Json::parse(slurp(folder.path / "out" / "report.json"));
@@ -205,24 +157,6 @@ TEST_CASE("what goes not together is told before the work") {
   const Ended id = build(folder, folder.path.string() + " --footprint-id nr --footprints " + plans);
   CHECK(id.exit_code == 2);
   CHECK_THAT(id.err, Contains("'nr' is no attribute") && Contains("id, use"));
-}
-
-TEST_CASE("stages make of a scene the files that build makes") {
-  const TempFolder folder;
-  write_row(folder);
-  const std::string plans = folder.write("plan.geojson", kPlan);
-  const std::string colod = COLOD_BINARY, f = folder.path.string(), quiet = " > /dev/null 2>&1 && ";
-  REQUIRE(build(folder, f + " --context none --footprints " + plans).exit_code == 0);
-  const std::string stages = colod + " segment " + f + " --footprints " + plans +
-                             " --ns 24 --nr 24 -o " + f + "/s.colod" + quiet + colod + " analyze " +
-                             f + "/s.colod" + quiet + colod + " mesh " + f + "/s.colod" + quiet +
-                             colod + " export " + f + "/s.colod --no-report-html -o " + f +
-                             "/out2 > /dev/null 2>&1";
-  REQUIRE(std::system(stages.c_str()) == 0);
-  for (const char* file : {"tileset.json", "buildings/left.glb", "buildings/right.glb"}) {
-    INFO(file);
-    CHECK(slurp(folder.path / "out" / file) == slurp(folder.path / "out2" / file));
-  }
 }
 
 TEST_CASE("a coarse tile that is broken or missing is told of once, and costs only itself") {
@@ -451,32 +385,4 @@ TEST_CASE("a tile of a place that is given as a mesh is told of, and terrain wit
   CHECK((run.err.find(says) != std::string::npos) == is_told);
   CHECK((run.exit_code != 0) == is_told);
   CHECK((run.err.find("looks z up") != std::string::npos) == (kind == "on its side"));
-}
-
-TEST_CASE("kill -9 during any stage of a scene: the same command goes on, the bytes are the same") {
-  const TempFolder folder;
-  write_row(folder);
-  const std::string plans = folder.write("plan.geojson", kPlan);
-  const std::string colod = COLOD_BINARY, f = folder.path.string();
-  const auto stages = [&](const std::string& name) {
-    const std::string file = f + "/" + name + ".colod";
-    return std::vector<std::string>{
-        "segment " + f + " --footprints " + plans + " --ns 24 --nr 24 -o " + file,
-        "analyze " + file, "mesh " + file,
-        "export " + file + " --no-report-html -o " + f + "/" + name};
-  };
-  const auto run = [&](const std::string& before, const std::string& stage) {
-    return std::system((before + colod + " " + stage + " > " + f + "/log 2>&1").c_str());
-  };
-  for (const std::string& stage : stages("whole")) REQUIRE(run("", stage) == 0);
-  for (const std::string& stage : stages("killed")) {
-    for (int ms = 10; ms < 3000; ms += ms / 2 + 10)  // sooner and later, and at last not at all
-      run("timeout -s KILL " + std::to_string(ms / 1000.0) + " ", stage);
-    INFO(stage << slurp(folder.path / "stderr"));
-    REQUIRE(run("", stage) == 0);
-  }
-  for (const char* file : {"tileset.json", "buildings/left.glb", "buildings/right.glb"}) {
-    INFO(file);
-    CHECK(slurp(folder.path / "whole" / file) == slurp(folder.path / "killed" / file));
-  }
 }
