@@ -22,13 +22,11 @@ std::string absolute(const std::string& path) {
 
 std::string to_json(const PlaceRecord& record) {
   const SceneChoice& choice = record.choice;
-  Json json = {{"input", absolute(record.input)},
-               {"up", static_cast<int>(record.read.up)},
-               {"input_memory", record.read.input_memory},
-               {"context", static_cast<int>(choice.context)},
-               {"footprints", absolute(choice.footprints)},
-               {"footprint_id", choice.footprint_id},
-               {"source_level", choice.source_level}};
+  Json json = {
+      {"input", absolute(record.input)},           {"up", static_cast<int>(record.read.up)},
+      {"input_memory", record.read.input_memory},  {"context", static_cast<int>(choice.context)},
+      {"footprints", absolute(choice.footprints)}, {"footprint_id", choice.footprint_id},
+      {"source_level", choice.source_level}};
   if (record.read.unit) json["unit"] = *record.read.unit;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

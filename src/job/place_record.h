@@ -22,9 +22,9 @@ std::string to_json(const PlaceRecord& record);
 /// Throws std::exception where that is no record.
 PlaceRecord place_record_of(const std::string& json);
 
-/// Opens a place again and gives a scene of its buildings what it has beside them (add_place). Where
-/// that cannot be, or the place has other buildings now, a failure of the scene says so: it is
-/// written without.
+/// Opens a place again and gives a scene of its buildings what it has beside them (add_place).
+/// Where that cannot be, or the place has other buildings now, a failure of the scene says so: it
+/// is written without.
 void add_place_again(const PlaceRecord& record, const SceneOutput& output, const Tell& tell,
                      Scene& built);
 

@@ -16,7 +16,8 @@ inline const std::vector<Box> kRow = {Box{{12, 14, 0}, {20, 24, 6}}, Box{{20, 14
 
 /// The finest tiles stand below `coarse`, one below another; `beside` them others.
 inline std::string write_row(const TempFolder& folder, const std::string& root_members = "",
-                      const std::vector<std::string>& coarse = {}, const std::string& beside = "") {
+                             const std::vector<std::string>& coarse = {},
+                             const std::string& beside = "") {
   const Mesh whole = terrain_with_boxes(40, 1, kRow);
   std::string children;
   for (int t = 0; t < 4; ++t) {
@@ -57,6 +58,7 @@ inline std::string plan(const std::vector<std::pair<std::string, std::string>>& 
   return out + "]}";
 }
 
-inline const std::string kPlan = plan({{"left", square(12, 14, 8, 10)}, {"right", square(20, 14, 8, 10)}});
+inline const std::string kPlan =
+    plan({{"left", square(12, 14, 8, 10)}, {"right", square(20, 14, 8, 10)}});
 
 }  // namespace colod::test

@@ -61,7 +61,8 @@ TEST_CASE("stages make of a scene the files that build makes, with what is aroun
   }
 }
 
-TEST_CASE("a place that is gone or has other buildings now costs what is around them, and says so") {
+TEST_CASE(
+    "a place that is gone or has other buildings now costs what is around them, and says so") {
   const TempFolder folder;
   write_row(folder);
   const std::string plans = folder.write("plan.geojson", kPlan), f = folder.path.string();

@@ -165,9 +165,9 @@ TEST_CASE("a layer that lost its building is replaced only by the rule for it") 
   RuleSet rules = RuleSet::all();  // without what keeps the main roof of a house on layer 0
   for (const Rule rule :
        {Rule::kFidelity, Rule::kStrictBound, Rule::kAreaShares, Rule::kMissingPlanes,
-        Rule::kPartyWalls, Rule::kWideOutlines, Rule::kHistograms, Rule::kBehind})
+        Rule::kPartyWalls, Rule::kWideOutlines, Rule::kHistograms, Rule::kBehind, Rule::kFloaters})
     rules = rules.without(rule);
-  const std::vector<Source> scans = neighbourhood(8, true, 15);
+  const std::vector<Source> scans = neighbourhood(8, true, 8);
   CHECK(has_stand_in(build(scans, rules), StandIn::kVolume));
   CHECK(!has_stand_in(build(scans, rules.without(Rule::kVolume)), StandIn::kVolume));
 }
