@@ -4,6 +4,7 @@
 #include "split.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -20,6 +21,8 @@ namespace colod::mesh_io {
 namespace {
 
 constexpr std::size_t kMostCells = 20'000'000;  // 5 km² of plan; what comes later stands by itself
+constexpr double kTurnsBack =
+    -0.9;                       // cosine of two faces at an edge: walls that lie on one another
 constexpr double kSlope = 0.3;  // of the distance that feet of bodies that stand apart may differ
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -156,6 +159,7 @@ class Splitter {
   void drop_coarser_levels(Labels& labels);
   void drop_alternatives(Labels& labels);
   Labels join(const Labels& labels, std::vector<char>& has_building) const;
+  void join_open_ones(Labels& labels, std::vector<char>& has_building) const;
   Parting by_objects();
   Parting by_groups();
   void part_bodies(Parting& parting);
@@ -281,12 +285,52 @@ Parting Splitter::by_objects() {
   return joined;
 }
 
+/// Labels between which the surface goes on, without a wall, are one building, named after the one
+/// with the most triangles: each alone would be open there. Where the walls of neighbours lie on
+/// one another it turns back.
+void Splitter::join_open_ones(Labels& labels, std::vector<char>& has_building) const {
+  std::vector<std::array<int, 3>> edges;  // both ends, triangle
+  for (std::size_t t = 0; t < all_.faces.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] =
+          std::minmax(welded_[all_.faces[t][k]], welded_[all_.faces[t][(k + 1) % 3]]);
+      if (a != b) edges.push_back({a, b, static_cast<int>(t)});
+    }
+  std::sort(edges.begin(), edges.end());
+  const auto normal = [&](int t) {
+    const Face& f = all_.faces[t];
+    const Vec3 &a = raw_.points[f[0]], &b = raw_.points[f[1]], &c = raw_.points[f[2]];
+    return Vec3((b - a).cross(c - a).normalized());
+  };
+  UnionFind sets(labels.names.size());
+  for (std::size_t i = 0, end; i < edges.size(); i = end) {
+    for (end = i; end < edges.size() &&
+                  std::equal(edges[i].begin(), edges[i].begin() + 2, edges[end].begin());)
+      ++end;
+    if (end - i != 2) continue;
+    const int s = edges[i][2], t = edges[i + 1][2];
+    const int a = labels.of_triangle[s], b = labels.of_triangle[t];
+    if (a >= 0 && b >= 0 && a != b && normal(s).dot(normal(t)) > kTurnsBack) sets.unite(a, b);
+  }
+  const auto lists = triangles_of(labels.of_triangle, labels.names.size());
+  std::vector<int> largest(labels.names.size(), -1);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    int& best = largest[sets.find(static_cast<int>(i))];
+    if (best < 0 || lists[i].size() > lists[best].size()) best = static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    has_building[largest[sets.find(static_cast<int>(i))]] |= has_building[i];
+  for (int& label : labels.of_triangle)
+    if (label >= 0) label = largest[sets.find(label)];
+}
+
 /// Groups are mostly walls and roofs, or materials: they are buildings only where all that remains
 /// after joining looks like one.
 Parting Splitter::by_groups() {
   const Labels labels = group_labels(raw_, all_);
   std::vector<char> has_building;
-  const Labels joined = join(labels, has_building);
+  Labels joined = join(labels, has_building);
+  join_open_ones(joined, has_building);
   const bool is_apart = std::all_of(joined.of_triangle.begin(), joined.of_triangle.end(),
                                     [&](int set) { return has_building[set]; });
   Parting parting = part_by(joined);

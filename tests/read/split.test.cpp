@@ -216,6 +216,45 @@ TEST_CASE("groups are buildings where all of them look like one and stand apart"
         Names{"s_body", "s_top"});
 }
 
+TEST_CASE("groups that are open to one another are one building, closed neighbours are two") {
+  const double scale = GENERATE(0.8, 1.0, 2.5);
+  const auto quad = [&](Mesh& m, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const int first = static_cast<int>(m.vertices.size());
+    for (const Vec3& p : {a, b, c, d}) m.vertices.push_back(scale * p);
+    m.faces.push_back({first, first + 1, first + 2});
+    m.faces.push_back({first, first + 2, first + 3});
+  };
+  Mesh body, tower;  // 12 x 8 x 6, and 3 x 3 x 9 before a gap in its wall at x = 12
+  quad(body, {0, 0, 0}, {12, 0, 0}, {12, 0, 6}, {0, 0, 6});
+  quad(body, {12, 8, 0}, {0, 8, 0}, {0, 8, 6}, {12, 8, 6});
+  quad(body, {0, 8, 0}, {0, 0, 0}, {0, 0, 6}, {0, 8, 6});
+  quad(body, {12, 0, 0}, {12, 2, 0}, {12, 2, 6}, {12, 0, 6});
+  quad(body, {12, 5, 0}, {12, 8, 0}, {12, 8, 6}, {12, 5, 6});
+  for (const auto& [from, to] : {std::pair{0.0, 2.0}, {2.0, 5.0}, {5.0, 8.0}})
+    quad(body, {0, from, 6}, {12, from, 6}, {12, to, 6}, {0, to, 6});
+  for (const auto& [low, high] : {std::pair{0.0, 6.0}, {6.0, 9.0}}) {
+    quad(tower, {12, 2, low}, {15, 2, low}, {15, 2, high}, {12, 2, high});
+    quad(tower, {15, 5, low}, {12, 5, low}, {12, 5, high}, {15, 5, high});
+  }
+  quad(tower, {15, 2, 0}, {15, 5, 0}, {15, 5, 9}, {15, 2, 9});
+  quad(tower, {12, 5, 6}, {12, 2, 6}, {12, 2, 9}, {12, 5, 9});
+  quad(tower, {12, 2, 9}, {15, 2, 9}, {15, 5, 9}, {12, 5, 9});
+  Objects open, closed;
+  open.add("g", "body", body), open.add("g", "tower", tower);
+  CHECK(names(read_bytes("s.obj", open.text)) == Names{"s"});
+  CHECK(names(read_bytes("s.obj", open.text, {.split = Split::kGroup})) ==
+        Names{"s_body", "s_tower"});
+  for (int i = 0; i < 3; ++i)  // a row, wall on wall, without floors
+    closed.add("g", "nr" + std::to_string(i), [&] {
+      Mesh m =
+          moved(gable_house(8 * scale, 8 * scale, 5 * scale, 3 * scale), {8 * scale * i, 0, 0});
+      std::erase_if(m.faces,
+                    [&](const Face& f) { return face_cross(m, f).normalized().z() < -0.99; });
+      return m;
+    }());
+  CHECK(names(read_bytes("s.obj", closed.text)) == Names{"s_nr0", "s_nr1", "s_nr2"});
+}
+
 TEST_CASE("bodies that look like buildings and stand apart are buildings of their own") {
   const Mesh hall = gable_house(60, 30, 10, 5);
   for (const double angle : {0.0, 20.0, 45.0}) {
