@@ -31,7 +31,7 @@ bool is_between(char c) { return c == ' ' || c == '_' || c == '-' || c == '.'; }
 
 /// Whether the last word of a name, or an IFC class, says that this is no whole building.
 bool is_element(const std::string& name) {
-  static const std::vector<std::string> kElements = {
+  static const std::vector<std::string> elements = {
       "wall", "roof",   "window",  "door",   "floor",   "slab",     "stair",
       "beam", "column", "ceiling", "storey", "railing", "covering", "furniture"};
   const std::string low = lower(name);
@@ -44,7 +44,7 @@ bool is_element(const std::string& name) {
   while (begin > 0 && is_letter(low[begin - 1])) --begin;
   std::string word = low.substr(begin, end - begin);
   if (word.size() > 4 && word.back() == 's') word.pop_back();
-  return std::find(kElements.begin(), kElements.end(), word) != kElements.end();
+  return std::find(elements.begin(), elements.end(), word) != elements.end();
 }
 
 /// Objects, nodes or groups: what the file says of each triangle.
