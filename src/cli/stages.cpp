@@ -116,8 +116,8 @@ int segment(const StageArguments& a) {
     store.drop_damaged(warns(log));
     segment_into(store, found.inventory, found.read, a.options, log, problems);
     if (!found.attributes.empty()) store.put_attributes(found.attributes);
-    store.put_place(
-        found.scene ? to_json(PlaceRecord{found.scene->tiles.tree().path, a.read, a.choice}) : "");
+    if (found.scene)  // what a later run adds is not of it, which export tells
+      store.put_place(to_json({found.scene->tiles.tree().path, a.read, a.choice}));
   }
   log_problems(problems, log);
   return exit_code(problems);

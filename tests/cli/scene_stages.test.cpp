@@ -67,13 +67,19 @@ TEST_CASE(
   write_row(folder);
   const std::string plans = folder.write("plan.geojson", kPlan), f = folder.path.string();
   mesh_scene(folder, f + " --footprints " + plans, f + "/s.colod");
-  const std::string kind = GENERATE(as<std::string>(), "tileset", "plans", "renamed");
+  const std::string kind = GENERATE(as<std::string>(), "tileset", "plans", "renamed", "grown");
   std::string says = "plan.geojson";
   if (kind == "tileset") fs::remove(folder.path / "tileset.json"), says = "cannot be opened again";
   if (kind == "plans") fs::remove(folder.path / "plan.geojson");
   if (kind == "renamed") {
     folder.write("plan.geojson", plan({{"east", square(12, 14, 8, 10)}}));
     says = "no building left any more: run colod segment again";
+  }
+  if (kind == "grown") {  // by a house that is none of the place
+    fs::create_directory(folder.path / "more");
+    const std::string house = folder.write("more/house.obj", obj_text(gable_house(10, 8, 5, 3)));
+    mesh_scene(folder, house, f + "/s.colod");
+    says = "no building house any more";
   }
   const Ended ended = run(folder, "export " + f + "/s.colod -o " + f + "/out");
   INFO(kind << ended.err);
